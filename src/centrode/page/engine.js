@@ -23,8 +23,9 @@ const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
 const SUSPECT = 1e-8, SAFETY = 16;
 /* how much more than their bounds numbers may stray */
 const ROOM = 1 + 1e-6;
-/* cells of a cover, in steps of the mesh: at first, greatest, least; below which doubt two of them become one */
-const WIDE = 12, WIDEST = 32, NARROWEST = 1 / 16, EASY = 0.12;
+/* cells of a cover: in steps of the mesh those of the first frame, and the widest; the narrowest in units of the widest,
+ * and where no cell is wider than a step; below which doubt two of them become one */
+const WIDE = 12, WIDEST = 32, NARROWEST = 1 / 512, NARROW = 1 / 16, EASY = 0.05;
 /* greatest change of an angle from one sample to the next at which its turns are counted there */
 const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
@@ -81,6 +82,8 @@ function createMechanism(data) {
   const signs = new Map(Object.entries(data.signs).map(([group, each]) => [Number(group), each]));
   const guards = data.guards.map(([kind, group], k) => ({ kind, group, k, ofRadicand: kind === "radicand" }));
   const byTime = data.mesh.nodes !== undefined;
+  /* laws of time whose second derivative is not known over a cell, but looked at: no cell is wider than one of the mesh */
+  const looked = byTime && !data.mesh.bounded;
 
   /* the mesh of events */
   const mesh = byTime ? Float64Array.from(data.mesh.nodes) : new Float64Array(data.mesh.count);
@@ -177,58 +180,50 @@ function createMechanism(data) {
   /* Guards over any cells, up to the last one that is looked at: numbers (outputs, cells) in one row, which belongs to
    * its purpose and is written anew by the next call. */
   const rooms = new Map();
+  const movingOfCells = printed.cells.moving.map(wordAndOwner);
   function cellsAt(purpose, { at, half, size }, last) {
-    const f = printed.cells, rowsOfPlaces = f.fixed.length + f.parts + f.moving.length;
+    const f = printed.cells, before = f.fixed.length, rowsOfPlaces = before + f.parts + f.moving.length;
     let room = rooms.get(purpose);
     if (room === undefined || room.size < size) {
       const most = 2 * size;
       room = { size: most, p: new Float64Array(rowsOfPlaces * most), o: new Float64Array(f.count * most) };
       rooms.set(purpose, room);
     }
-    const { p, o } = room, start = (f.fixed.length + f.parts) * size;
-    f.fixed.forEach((name, k) => p.set((name === "half" ? half : at).subarray(0, size), k * size));
-    f.before(v, p, size, p.subarray(f.fixed.length * size));
-    f.moving.forEach((name, k) => {
-      const [word, of] = wordAndOwner(name);
-      fillRow(word, of, p.subarray(start + k * size, start + (k + 1) * size), at);
-    });
+    const { p, o } = room;
+    for (let k = 0; k < before; k++) {
+      const row = f.fixed[k] === "half" ? half : at;
+      for (let i = 0; i < size; i++) p[k * size + i] = row[i];
+    }
+    f.before(v, p, size, f.parts ? p.subarray(before * size) : p);
+    for (let k = 0; k < movingOfCells.length; k++) {
+      const [word, of] = movingOfCells[k], start = (before + f.parts + k) * size;
+      fillRow(word, of, p.subarray(start, start + size), at);
+    }
     f.run(v, p, size, o, last);
     return o;
   }
 
-  /* cells that grow in number: where they are and how wide */
+  /* cells that grow in number: where they are and how wide; of a cover also how wide they may become, and their doubt */
   function cellList() {
-    const cells = { at: new Float64Array(256), half: new Float64Array(256), size: 0 };
-    cells.add = (at, half) => {
-      if (cells.size === cells.at.length) {
-        for (const name of ["at", "half"]) {
-          const longer = new Float64Array(2 * cells.size);
+    const cells = { size: 0 }, numbers = ["at", "half", "widest", "doubt"];
+    for (const name of numbers) cells[name] = new Float64Array(256);
+    cells.add = (at, half, widest = Infinity, doubt = NaN) => {
+      const { size } = cells;
+      if (size === cells.at.length) {
+        for (const name of numbers) {
+          const longer = new Float64Array(2 * size);
           longer.set(cells[name]);
           cells[name] = longer;
         }
       }
-      cells.at[cells.size] = at;
-      cells.half[cells.size++] = half;
+      cells.at[size] = at;
+      cells.half[size] = half;
+      cells.widest[size] = widest;
+      cells.doubt[size] = doubt;
+      cells.size++;
     };
-    cells.addParts = (at, half, parts) => {
-      for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts);
-    };
-    /* one cell with the last one where both decide easily, and together are not too wide */
-    let easy = false;
-    cells.addOrJoin = (at, half, doubt, widest) => {
-      const before = cells.size - 1, both = before < 0 ? 0 : half + cells.half[before];
-      if (before >= 0 && easy && doubt < EASY && both <= widest(at) && Math.abs(at - cells.at[before] - both) < FINEST * both) {
-        cells.at[before] += half;
-        cells.half[before] = both;
-        easy = false;
-      } else {
-        cells.add(at, half);
-        easy = doubt < EASY;
-      }
-    };
-    cells.sort = () => {
-      const order = Array.from({ length: cells.size }, (_x, k) => k).sort((a, b) => cells.at[a] - cells.at[b]);
-      for (const name of ["at", "half"]) cells[name].set(order.map((k) => cells[name][k]));
+    cells.addParts = (at, half, parts, widest) => {
+      for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts, widest);
     };
     return cells;
   }
@@ -264,64 +259,73 @@ function createMechanism(data) {
 
   const largest = new Map();
 
-  /* the path that the motion takes, and the nodes of the mesh along it */
+  /* the range in which something happens to the samples, and that of the whole mesh */
   let leastDrive = initial, mostDrive = initial;
   for (const x of drive) { leastDrive = Math.min(leastDrive, x); mostDrive = Math.max(mostDrive, x); }
-  const everything = [0, mesh.length - 1];
-  const along = [nearestNode(leastDrive - WINDOW * unit) - 2, nearestNode(mostDrive + WINDOW * unit) + 2]
-    .map((node) => Math.min(mesh.length - 1, Math.max(0, node)));
+  const ofMotion = rangeOf(leastDrive - BESIDE * unit, mostDrive + BESIDE * unit);
+  const everything = rangeOf(mesh[0], mesh[mesh.length - 1]);
 
-  /* Cells that cover a range of the mesh, fine enough to show that nothing happens in them. Numbers change little from
-   * one frame to the next, so the cells of the last one are where the next begins: a cell that decides nothing is
-   * halved, two neighbours that decide easily become one. */
-  function createCover([first, last]) {
-    let cells = cellList(), following = cellList(), parts = cellList(), finer = cellList();
-    let doubts = new Float64Array(0);
-    if (byTime) for (let j = first; j <= last; j++) cells.add(mesh[j], halves[j]);
-    else {
-      const low = mesh[first] - 0.5 * step, high = mesh[last] + 0.5 * step;
-      cells.addParts(0.5 * (low + high), 0.5 * (high - low), Math.ceil((high - low) / (WIDE * step)));
-    }
-    /* laws of time are looked at in cells as wide as those of the mesh */
-    const widest = (x) => (byTime ? halves[nearestNode(x)] : 0.5 * WIDEST * step);
-    const narrowest = (x) => NARROWEST * (byTime ? halves[nearestNode(x)] : 0.5 * step);
-
-    function doubtsOf(some) {
-      const o = cellsAt("cover", some), count = some.size;
-      if (doubts.length < count) doubts = new Float64Array(2 * count);
-      for (let i = 0; i < count; i++) doubts[i] = doubtOfCell(o, count, i, some.half[i]);
-    }
-
-    /* cells in which a guard may pass or touch zero; none where nothing happens */
-    function undecided() {
-      const left = [];
-      let rest = cells, halved = false;
-      following.size = 0;
-      while (rest.size) {
-        doubtsOf(rest);
-        finer.size = 0;
-        for (let i = 0; i < rest.size; i++) {
-          const at = rest.at[i], half = rest.half[i];
-          if (doubts[i] < 1) {
-            following.addOrJoin(at, half, doubts[i], widest);
-          } else if (half > narrowest(at)) finer.addParts(at, half, 2);
-          else {
-            following.addOrJoin(at, half, Infinity, widest);
-            left.push([at, half]);
-          }
-        }
-        halved = halved || finer.size > 0;
-        [parts, finer] = [finer, parts];
-        rest = parts;
-      }
-      if (halved) following.sort();
-      [cells, following] = [following, cells];
-      return left;
-    }
-    return { undecided };
+  function rangeOf(low, high) {
+    return { low, high, first: Math.max(0, nodesBelow(low) - 1), last: Math.min(mesh.length - 1, nodesBelow(high)), cover: null };
   }
 
-  /* below 1 where no guard passes or touches zero in a cell; the least such number of a guard counts */
+  /* Cells that cover a range, narrow enough to show that nothing happens in them. Numbers change little from one frame
+   * to the next, so one begins with the cells of the last: those that decide nothing are halved, two neighbours that
+   * decide easily become one. */
+  function createCover({ low, high, first, last }) {
+    let cells = cellList(), following = cellList();
+    const judged = cellList(), narrowest = looked ? NARROW : NARROWEST;
+    if (looked) for (let j = first; j <= last; j++) cells.add(mesh[j], halves[j], halves[j]);
+    else {
+      const node = byTime ? (mesh[last] - mesh[first]) / (last - first) : step;
+      cells.addParts(0.5 * (low + high), 0.5 * (high - low), Math.ceil((high - low) / (WIDE * node)), 0.5 * WIDEST * node);
+    }
+
+    /* judge those that are not yet; those that decide nothing leave halves behind them, as long as they are wide */
+    function refine() {
+      judged.size = following.size = 0;
+      const { size, at, half, widest, doubt } = cells;
+      for (let i = 0; i < size; i++) if (doubt[i] !== doubt[i]) judged.add(at[i], half[i]);
+      if (!judged.size) return false;
+      const o = cellsAt("cover", judged);
+      for (let i = 0, q = 0; i < size; i++) {
+        const doubtNow = doubt[i] !== doubt[i] ? doubtOfCell(o, judged.size, q++, half[i]) : doubt[i];
+        if (doubtNow < 1 || half[i] <= narrowest * widest[i]) following.add(at[i], half[i], widest[i], doubtNow);
+        else following.addParts(at[i], half[i], 2, widest[i]);
+      }
+      [cells, following] = [following, cells];
+      return true;
+    }
+
+    /* the same cells for the next frame, fewer where they decide easily */
+    function join() {
+      following.size = 0;
+      const { size, at, half, widest, doubt } = cells;
+      for (let i = 0; i < size; i++) {
+        const wide = i + 1 < size ? half[i] + half[i + 1] : Infinity;
+        const both = doubt[i] < EASY && doubt[i + 1] < EASY && wide <= Math.min(widest[i], widest[i + 1]);
+        if (!both || Math.abs(at[i + 1] - at[i] - wide) > FINEST * wide) { following.add(at[i], half[i], widest[i]); continue; }
+        following.add(at[i] + half[i + 1], wide, Math.min(widest[i], widest[i + 1]));
+        i++;
+      }
+      [cells, following] = [following, cells];
+    }
+
+    /* nodes about the cells in which something may happen; null where nothing does */
+    return () => {
+      while (refine());
+      const nodes = [];
+      for (let i = 0, next = 0; i < cells.size; i++) {
+        if (cells.doubt[i] < 1) continue;
+        const end = Math.min(mesh.length - 1, nearestNode(cells.at[i] + cells.half[i]) + 2);
+        for (next = Math.max(next, nearestNode(cells.at[i] - cells.half[i]) - 2); next <= end; next++) nodes.push(next);
+      }
+      join();
+      return nodes.length ? Int32Array.from(nodes) : null;
+    };
+  }
+
+  /* below 1 where no guard passes or touches zero in a cell; the greatest such number of a guard counts */
   function doubtOfCell(o, count, i, half) {
     let most = 0;
     for (let k = 0; k < guards.length; k++) {
@@ -337,25 +341,13 @@ function createMechanism(data) {
     return most;
   }
 
-  const covers = new Map();
-
-  /* nodes of a range at which something may happen; null where nothing happens */
+  /* nodes of a range at which something may happen; null where nothing does */
   function nodesToSearch(range) {
     for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
     if (!guards.length) return null;
-    if (data.counted.length) return range === everything ? allNodes : allNodes.subarray(range[0], range[1] + 1);
-    if (!covers.has(range)) covers.set(range, createCover(range));
-    const cells = covers.get(range).undecided();
-    if (!cells.length) return null;
-    const chosen = new Uint8Array(mesh.length);
-    let some = 0;
-    for (const [at, half] of cells) {
-      const from = Math.max(0, nearestNode(at - half) - 2), to = Math.min(mesh.length - 1, nearestNode(at + half) + 2);
-      for (let j = from; j <= to; j++) if (!chosen[j]) { chosen[j] = 1; some++; }
-    }
-    const nodes = new Int32Array(some);
-    for (let j = 0, k = 0; j < mesh.length; j++) if (chosen[j]) nodes[k++] = j;
-    return nodes;
+    if (data.counted.length) return allNodes.subarray(range.first, range.last + 1);
+    range.cover ??= createCover(range);
+    return range.cover();
   }
 
   const around = cellList();
@@ -453,11 +445,10 @@ function createMechanism(data) {
       places.forEach((place, q) => {
         const low = q > 0 ? 0.5 * (places[q - 1] + place) : centre - half;
         const high = q + 1 < places.length ? 0.5 * (place + places[q + 1]) : centre + half;
-        for (const end of [low - place, high - place]) {
-          for (let h = 0, share = 1; h <= HALVINGS; h++, share /= 2) {
-            const way = end * share, wide = 0.25 * Math.abs(way);
-            if (wide > 0) cells.add(place + 0.75 * way, wide);
-          }
+        /* from the left to the right: shorter and shorter, then longer and longer */
+        for (let h = -HALVINGS; h <= HALVINGS + 1; h++) {
+          const way = (h > 0 ? high - place : low - place) * 2 ** -(h > 0 ? HALVINGS + 1 - h : HALVINGS + h), wide = 0.25 * Math.abs(way);
+          if (wide > 0) cells.add(place + 0.75 * way, wide);
         }
       });
     }
@@ -543,19 +534,18 @@ function createMechanism(data) {
 
   /* gaps filled by the last known value on the way from the start; both rows of directions together */
   function fillGaps(row, other = row) {
-    const there = (j) => Number.isFinite(row[j]) && Number.isFinite(other[j]);
-    let whole = true;
-    for (let j = 0; j < row.length && whole; j++) whole = there(j);
+    const size = row.length;
+    let known = 0, whole = true;
+    for (let j = 0; j < size; j++) if (!(Number.isFinite(row[j]) && Number.isFinite(other[j]))) { whole = false; break; }
     if (whole) return;
-    let known = 0;
-    while (known < row.length && !there(known)) known++;
-    const [value, beside] = known < row.length ? [row[known], other[known]] : [0, 0];
+    while (known < size && !(Number.isFinite(row[known]) && Number.isFinite(other[known]))) known++;
+    const [first, beside] = known < size ? [row[known], other[known]] : [0, 0];
     for (const from of [1, -1]) {
-      let last = -1;
-      for (let j = startNode; j >= 0 && j < mesh.length; j += from) {
-        if (there(j)) { last = j; continue; }
-        row[j] = last >= 0 ? row[last] : value;
-        other[j] = last >= 0 ? other[last] : beside;
+      let last = first, lastBeside = beside;
+      for (let j = startNode; j >= 0 && j < size; j += from) {
+        if (Number.isFinite(row[j]) && Number.isFinite(other[j])) { last = row[j]; lastBeside = other[j]; continue; }
+        row[j] = last;
+        other[j] = lastBeside;
       }
     }
   }
@@ -563,7 +553,7 @@ function createMechanism(data) {
   /* Beyond the motion only the polynomials beside change points are of interest, which end where something happens. */
   let changesBefore = false;
   function findEvents() {
-    search(changesBefore ? everything : along);
+    search(changesBefore ? everything : ofMotion);
     const changes = data.smooth && events.some((event) => event.kind === "change point");
     if (changes && !changesBefore) search(everything);
     changesBefore = changes;
@@ -740,17 +730,18 @@ function createMechanism(data) {
   }
 
   /* absence is NaN: nothing stands in open samples, and no derivatives in singular ones */
+  const open = new Int32Array(n), partly = new Int32Array(n);
   function settle() {
-    let some = false;
-    for (let i = 0; i < n; i++) some = some || status[i] !== OK;
-    if (!some) return;
-    for (let i = 0; i < n; i++) if (status[i] === OPEN) residual[i] = NaN;
-    for (let k = 0; k < rows.length; k++) {
+    let ofOpen = 0, ofPartly = 0;
+    for (let i = 0; i < n; i++) if (status[i] === OPEN) open[ofOpen++] = i; else if (status[i] !== OK) partly[ofPartly++] = i;
+    for (let q = 0; q < ofOpen; q++) residual[open[q]] = NaN;
+    if (ofOpen || ofPartly) for (let k = 0; k < rows.length; k++) {
       const row = rows[k], [derivative, ofFrame] = data.rows[k];
-      for (let i = 0; i < n; i++) {
-        if (status[i] === OK) continue;
-        const absent = !ofFrame && ((derivative && status[i] === SINGULAR) || !Number.isFinite(row[i]));
-        if (absent || status[i] === OPEN) row[i] = NaN;
+      for (let q = 0; q < ofOpen; q++) row[open[q]] = NaN;
+      if (ofFrame) continue;
+      for (let q = 0; q < ofPartly; q++) {
+        const i = partly[q];
+        if (!Number.isFinite(row[i]) || (derivative && status[i] === SINGULAR)) row[i] = NaN;
       }
     }
   }

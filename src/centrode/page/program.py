@@ -330,7 +330,7 @@ def _data(
         "counted": [[key, float(ready.assembled.angles.get(key, 0.0))] for key in traced.counted],
         "smooth": mechanism.assembly.continuation == "smooth",
         "impossible": [int(k) for k in np.nonzero(path.impossible(span.parameter))[0]],
-        "mesh": _mesh(path, span),
+        "mesh": _mesh(path, span, traced),
         "places": _places(span),
     }
 
@@ -387,11 +387,11 @@ def _quantity(ready: Ready, quantity: Any) -> dict[str, Any]:
     }
 
 
-def _mesh(path: Path, span: SampleGrid) -> dict[str, Any]:
+def _mesh(path: Path, span: SampleGrid, traced: PageTrace) -> dict[str, Any]:
     """The nodes on which events are looked for; of one drive by their first one and their distance."""
     nodes = mesh_of(path, span.parameter)
     if path.by_time:
-        return {"nodes": nodes.tolist()}
+        return {"nodes": nodes.tolist(), "bounded": traced.laws_are_bounded}
     first = round((nodes[0] - path.initial) / path.step - OFF_GRID)
     return {"first": first, "count": len(nodes), "off": OFF_GRID, "step": float(path.step)}
 
