@@ -34,6 +34,9 @@ PLANE, SPHERE, LOCKED, BRANCHED = (
     "slider-between-cranks-locked",
     "antiparallelogram",
 )
+REDUNDANT = "three-crank-parallelogram"
+LIMITS = (1.79991241652444, 5.47487058607948)
+"""Of the locked one [rad]: where its coupler and rocker come into line; its file says where they are from."""
 LARGE = ("excavator-arm", "jansen-leg", "five-bar-two-drives", "andrews-squeezer")
 BYTES = 250_000
 AXE = Path(__file__).with_name("axe") / "axe.min.js"
@@ -338,7 +341,59 @@ def test_statuses_are_said_and_change_points_give_a_command(
     assert main(["--lang", "en", *shlex.split(command)[1:], "--no-figures", "--out", "run"]) == 0
 
 
-@pytest.mark.parametrize(("name", "wide", "scheme"), [(BRANCHED, 400, "light"), (SPHERE, 1440, "dark")])
+def test_a_constraint_that_does_not_fit_is_red(
+    running: Any, pages: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The third crank repeats the constraints of the others: with one of another length nothing closes."""
+    mechanism = ct.example(REDUNDANT)
+    with opened(running, pages(REDUNDANT)) as seen:
+        hand = Hand(seen)
+        seen.page.fill(".rows input[type=text] >> nth=0", "1.05")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        motion = ct.motion(mechanism, vary={"links.OA.length": [1.05]}).isel(mechanism=0)
+        _head, *rows = hand.table()
+        assert [row[1] for row in rows] == [ct.Status(one).word for one in motion["status"].values.tolist()]
+        # the four-bar of the first two cranks closes while the way from A to D leaves coupler (2) and rocker (1) room
+        way = np.sqrt(1.05**2 + 2.0**2 - 2 * 1.05 * 2.0 * np.cos([float(row[0]) for row in rows]))
+        closes = (way >= 1.0) & (way <= 3.0)
+        said = [line for line in hand.statuses.splitlines() if "closure residual up to" in line]
+        assert len(said) == len([k for k in range(len(closes)) if closes[k] and (k == 0 or not closes[k - 1])])
+        assert all("above its bound of 1·10⁻⁷" in line for line in said)
+        colours = "(one) => [getComputedStyle(one).fill, getComputedStyle(document.querySelector('.bad')).color]"
+        for where in (".strip", ".chart"):
+            for band in seen.page.query_selector_all(f"{where} .band.misfit"):
+                fill, bad = band.evaluate(colours)
+                assert fill == bad
+        assert len(seen.page.query_selector_all(".strip .band.misfit")) == len(said)
+        command = str(seen.page.inner_text(".command code"))
+        seen.page.click('[data-do="reset"]')
+        frames(seen.page)
+        assert not seen.page.query_selector_all(".band.misfit") and "residual" not in hand.statuses
+        assert seen.messages == []
+    assert main(["--lang", "en", *shlex.split(command)[1:]]) == 2
+    assert "length of link FE" in capsys.readouterr().err
+
+
+def test_limits_are_marked_where_the_motion_ends(running: Any, pages: Callable[..., Path]) -> None:
+    """Each in every curve and along the slider, at its place on the axis, with a sign before its sentence."""
+    with opened(running, pages(LOCKED)) as seen:
+        box = seen.page.evaluate(
+            "(({ x, width }) => [x.baseVal.value, width.baseVal.value])(document.querySelector('.plot .box'))"
+        )
+        places = seen.page.evaluate(
+            "[...document.querySelectorAll('.chart')].map((one) =>"
+            " [...one.querySelectorAll('.mark.limit')].map((mark) => mark.x1.baseVal.value))"
+        )
+        expected = [box[0] + box[1] * at / (2 * np.pi) for at in LIMITS]
+        np.testing.assert_allclose(places, [expected] * len(places), atol=0.01 * box[1] / 100)
+        assert len(seen.page.query_selector_all(".strip .mark.limit")) == 2
+        assert len(seen.page.query_selector_all(".statuses .sign .mark.limit")) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "wide", "scheme"), [(BRANCHED, 400, "light"), (SPHERE, 1440, "dark"), (REDUNDANT, 400, "dark")]
+)
 def test_pages_are_accessible(
     running: Any, pages: Callable[..., Path], name: str, wide: int, scheme: str
 ) -> None:
@@ -346,6 +401,9 @@ def test_pages_are_accessible(
     with opened(running, pages(name), wide, color_scheme=scheme, bypass_csp=True) as seen:
         for box in seen.page.query_selector_all("[data-show]:not(:checked)"):
             box.click()
+        if name == REDUNDANT:
+            seen.page.fill(".rows input[type=text] >> nth=0", "1.05")
+            seen.page.keyboard.press("Tab")
         seen.page.click("summary")
         seen.page.evaluate(AXE.read_text(encoding="utf-8"))
         found = seen.page.evaluate("axe.run()")

@@ -5,7 +5,8 @@
  * const mechanism = createMechanism(data);      data: what the program says of the mechanism, see `page.program`
  * const frame = mechanism.recompute(values);    values: numbers [SI] in the order of mechanism.parameters
  *
- * A frame has, at every sample: drive (rad, m or s), time, status (index into data.statuses), residual; position,
+ * A frame has, at every sample: drive (rad, m or s), time, status (index into data.statuses), residual, and as misfit the
+ * residual of samples that are open because it is above its bound; position,
  * velocity, acceleration [point][axis]; angle, angularVelocity, angularAcceleration [link] (on the sphere rotation
  * vectors [link][axis], and the angles of data.joints in jointAngle); all of them and what else there is by name in
  * `quantities`. Beside these: events [{kind, drive, group}], reach [low, high], signsChange, possible, residualBound.
@@ -608,7 +609,7 @@ function createMechanism(data) {
     const of = name.slice("turns ".length);
     if (name.startsWith("turns ") && !turnRows.has(of)) turnRows.set(of, new Float64Array(n));
   }
-  const status = new Uint8Array(n);
+  const status = new Uint8Array(n), misfit = new Float64Array(n);
 
   const nested = (places) => (Array.isArray(places) ? places.map(nested) : rows[places]);
   const quantities = Object.fromEntries(data.quantities.map((each) => [each.name, nested(each.rows)]));
@@ -621,7 +622,7 @@ function createMechanism(data) {
     angle: only("angle") ?? only("joint_angle"), jointAngle: only("joint_angle"),
     rate: only("angular_velocity"), angularAcceleration: only("angular_acceleration"),
     rateByDrive: only("angular_velocity_coefficient"), angularAccelerationByDrive: only("angular_acceleration_coefficient"),
-    quantities, status, residual, residualBound: data.residual_bound, reach,
+    quantities, status, residual, misfit, residualBound: data.residual_bound, reach,
     events: [], possible: true, signsChange: false, outputs: {},
   };
 
@@ -726,7 +727,11 @@ function createMechanism(data) {
     }
     for (const i of data.impossible) status[i] = OPEN;
     if (closes) return;
-    for (let i = 0; i < n; i++) if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
+    for (let i = 0; i < n; i++) {
+      if (status[i] === OPEN || !(residual[i] > bound)) continue;
+      status[i] = OPEN;
+      misfit[i] = residual[i];
+    }
   }
 
   /* absence is NaN: nothing stands in open samples, and no derivatives in singular ones */
@@ -817,6 +822,7 @@ function createMechanism(data) {
     frame.possible = isPossible(values);
     frame.signsChange = false;
     frame.events = events = [];
+    misfit.fill(NaN);
     forcesKnown = false;
     reach[0] = -Infinity;
     reach[1] = Infinity;
