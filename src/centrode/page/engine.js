@@ -16,7 +16,8 @@
  */
 const createMechanism = (() => {
 "use strict";
-/* printed */
+/* the functions of one mechanism */
+"printed";
 
 const TURN = 2 * Math.PI;
 const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];

@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import Any, TypeAlias
 
@@ -140,14 +142,25 @@ def page_program(
     except Unwritten as unwritten:
         what = _("the operation {operation} has no words in JavaScript").format(operation=unwritten.operation)
         raise NotComputedYet("page", what) from None
-    engine = files("centrode.page").joinpath("engine.js").read_text(encoding="utf-8")
-    javascript = engine.replace("/* printed */", f"{HELPERS}const printed = {{\n{functions}\n}};")
+    javascript = _engine().replace(PRINTED, f"{HELPERS}const printed = {{\n{functions}\n}};")
     return PageProgram(
         mechanism,
         parameters,
         _data(mechanism, prepared, span, parameters, varied, traced, acting),
         javascript,
     )
+
+
+PRINTED = '"printed";'
+"""Where the functions of a mechanism stand in the engine."""
+
+
+@cache
+def _engine() -> str:
+    """The engine without its indents and comments: a page is sent by mail."""
+    script = files("centrode.page").joinpath("engine.js").read_text(encoding="utf-8")
+    bare = re.sub(r"^\s*/\*.*?\*/\n", "", script, flags=re.DOTALL | re.MULTILINE)
+    return "".join(f"{line.strip()}\n" for line in bare.splitlines() if line.strip())
 
 
 # The numbers that a page changes.

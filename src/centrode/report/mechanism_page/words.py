@@ -42,6 +42,6 @@ def words_of_page() -> dict[str, object]:
         "link_copied": _("The link is copied: it keeps the dimensions, the position and the view."),
         "table_copied": _("The table is copied as CSV."),
         "taken": _("The dimensions, the position and the view of the link are shown."),
-        "damaged": _("The link is damaged: the mechanism of the file is shown. Copy the whole link again."),
-        "foreign": _("The link belongs to another mechanism: the mechanism of the file is shown."),
+        "damaged": _("The link is damaged and changes nothing. Copy the whole link again."),
+        "foreign": _("The link belongs to another mechanism and changes nothing."),
     }
