@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import hashlib
 import io
@@ -34,6 +35,9 @@ PLANE, SPHERE, LOCKED, BRANCHED = (
     "slider-between-cranks-locked",
     "antiparallelogram",
 )
+REDUNDANT = "three-crank-parallelogram"
+LIMITS = (1.79991241652444, 5.47487058607948)
+"""Of the locked one [rad]: where its coupler and rocker come into line; its file says where they are from."""
 LARGE = ("excavator-arm", "jansen-leg", "five-bar-two-drives", "andrews-squeezer")
 BYTES = 250_000
 AXE = Path(__file__).with_name("axe") / "axe.min.js"
@@ -105,9 +109,9 @@ def test_what_does_not_vary_has_no_handle() -> None:
 
 @pytest.mark.parametrize("name", LARGE)
 def test_a_page_is_small_and_the_same_each_time(name: str) -> None:
-    page = mechanism_page(name)
+    page = mechanism_page(name, language="uk")  # two bytes a letter
     assert len(page.encode()) <= BYTES
-    assert mechanism_page(name) == page
+    assert mechanism_page(name, language="uk") == page
 
 
 def test_a_page_loads_nothing_and_runs_its_own_scripts() -> None:
@@ -302,6 +306,120 @@ def test_links_keep_dimensions_and_are_refused_in_words(running: Any, pages: Cal
         assert seen.messages == []
 
 
+def link_to(page: Path, state: object) -> str:
+    """A link whose check sum is right, whatever it keeps: 32 bits of FNV-1a over digest and state, to the base 36."""
+    digest = json.loads(DATA.findall(page.read_text(encoding="utf-8"))[0])["program"]["digest"]
+    told = base64.urlsafe_b64encode(json.dumps(state).encode()).decode().rstrip("=")
+    total = 0x811C9DC5
+    for letter in digest + told:
+        total = ((total ^ ord(letter)) * 0x01000193) & 0xFFFFFFFF
+    return f"s={digest}.{told}.{np.base_repr(total, 36).lower()}"
+
+
+def test_what_a_forged_link_keeps_is_not_trusted(running: Any, pages: Callable[..., Path]) -> None:
+    """Its sum is right, its numbers are not: out of range, of another kind, no rotation, no link of the mechanism."""
+    whole: dict[str, Any] = {"v": {}, "p": 3.0, "c": ["position.C"], "s": ["paths"], "r": 0.0}
+    turned = {"w": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]}
+    wrong = [
+        [], None, {}, {**whole, "v": []}, {**whole, "v": {"links.AB.length": 1e9}}, {**whole, "v": {"links.AB.length": "1"}},
+        {**whole, "v": {"links.__proto__.length": 1.0}}, {**whole, "p": None}, {**whole, "r": "fast"},
+        {**whole, "w": [[0.0] * 3] * 3}, {**whole, "w": [[1e300, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]},
+        {**whole, "k": "nothing"}, {**whole, "k": {}},
+    ]  # fmt: skip
+    harmless = [
+        whole | turned,
+        whole | {"p": 1e300, "r": -1e300, "c": [1, None] + ["position.B"] * 99, "s": [{}]},
+    ]
+    with opened(running, pages(SPHERE)) as seen:
+        hand = Hand(seen)
+        before = seen.page.evaluate("document.body.innerText")
+        for state in [*wrong, *harmless]:
+            seen.page.goto("about:blank")
+            seen.page.goto(f"{pages(SPHERE).as_uri()}#{link_to(pages(SPHERE), state)}")
+            frames(seen.page)
+            assert hand.said.startswith("The link is damaged") == (state in wrong), state
+            if state in wrong:
+                assert (
+                    seen.page.evaluate("document.body.innerText").replace(hand.said, "").split()
+                    == before.split()
+                )
+        assert len(seen.page.query_selector_all(".chart")) == 12
+        assert seen.messages == []
+
+
+def test_a_damaged_link_changes_nothing_of_an_open_page(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages(PLANE)) as seen:
+        hand = Hand(seen)
+        seen.page.fill(".rows input[type=text] >> nth=0", "1.2")
+        seen.page.keyboard.press("Tab")
+        seen.page.evaluate("location.hash = 's=1.2.3'")
+        until(seen.page, lambda: hand.said.startswith("The link is damaged"))
+        assert hand.values() == {"links.OA.length": 1.2}
+
+
+def test_every_gesture_has_its_keys(running: Any, pages: Callable[..., Path]) -> None:
+    """The table of the page's document, from top to bottom, without a mouse."""
+    with opened(running, pages(SPHERE)) as seen:
+        hand, keyboard = Hand(seen), seen.page.keyboard
+
+        def press(where: str, *keys: str) -> None:
+            seen.page.focus(where)
+            for key in keys:
+                keyboard.press(key)
+            frames(seen.page)
+
+        def place() -> float:
+            return float(seen.page.get_attribute(".moving", "data-place"))
+
+        reached = set()
+        for _ in range(60):
+            keyboard.press("Tab")
+            reached.add(
+                seen.page.evaluate(
+                    "document.activeElement.dataset.handle ?? document.activeElement.dataset.turn"
+                )
+            )
+        assert {"A", "B", "C", "D", "left", "right", "up", "down"} <= reached
+        press('[data-handle="D"]', "ArrowRight", "Shift+ArrowUp")
+        press('[data-handle="C"]', "ArrowDown")
+        press(".rows input[type=range]", "ArrowRight")
+        press(".rows input[type=text] >> nth=1", "Control+a", "4", "4", "Enter")
+        assert hand.values()["links.BC.length"] == pytest.approx(np.radians(44.0))
+        assert len(hand.values()) >= 4
+        press(".paper", "Home", "ArrowRight", "ArrowRight", "Shift+ArrowRight")
+        assert place() == 12.0
+        press(".paper", "End")
+        assert place() == 360.0
+        press(".paper", "Home", "Space")
+        until(seen.page, lambda: place() > 1.0)
+        press(".paper", "Space")
+        eye = hand.joint("A")
+        press('[data-turn="left"]', "Space")
+        assert np.hypot(*(hand.joint("A") - eye)) > 5
+        press('[data-do="add-curve"]', "Enter")
+        assert len(seen.page.query_selector_all(".chart")) == 5
+        press(".chart:last-child .remove", "Space")
+        assert len(seen.page.query_selector_all(".chart")) == 4
+        for _ in range(6):
+            press(".paper", "Control+z")
+        assert seen.page.is_disabled('[data-do="undo"]') and hand.values() == {}
+        assert seen.messages == []
+
+
+def test_a_finger_drags_a_joint(running: Any, pages: Callable[..., Path]) -> None:
+    with opened(running, pages(PLANE), 400, has_touch=True) as seen:
+        hand = Hand(seen)
+        start, way = hand.joint("B"), np.array([-20.0, -15.0])
+        touch = seen.page.context.new_cdp_session(seen.page)
+        for kind, at in (("touchStart", start), ("touchMove", start + way / 2), ("touchMove", start + way)):
+            touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": at[0], "y": at[1]}]})
+        frames(seen.page)
+        np.testing.assert_allclose(hand.joint("B"), start + way, atol=0.2)  # of a tenth of a pixel
+        touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        frames(seen.page)
+        assert set(hand.values()) == {"links.AB.length", "links.DB.length"}
+
+
 def test_statuses_are_said_and_change_points_give_a_command(
     running: Any, pages: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -338,7 +456,63 @@ def test_statuses_are_said_and_change_points_give_a_command(
     assert main(["--lang", "en", *shlex.split(command)[1:], "--no-figures", "--out", "run"]) == 0
 
 
-@pytest.mark.parametrize(("name", "wide", "scheme"), [(BRANCHED, 400, "light"), (SPHERE, 1440, "dark")])
+def test_a_constraint_that_does_not_fit_is_red(
+    running: Any, pages: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The third crank repeats the constraints of the others: with one of another length nothing closes."""
+    mechanism = ct.example(REDUNDANT)
+    with opened(running, pages(REDUNDANT)) as seen:
+        hand = Hand(seen)
+        seen.page.fill(".rows input[type=text] >> nth=0", "1.05")
+        seen.page.keyboard.press("Tab")
+        frames(seen.page)
+        motion = ct.motion(mechanism, vary={"links.OA.length": [1.05]}).isel(mechanism=0)
+        _head, *rows = hand.table()
+        assert [row[1] for row in rows] == [ct.Status(one).word for one in motion["status"].values.tolist()]
+        # the four-bar of the first two cranks closes while the way from A to D leaves coupler (2) and rocker (1) room
+        way = np.sqrt(1.05**2 + 2.0**2 - 2 * 1.05 * 2.0 * np.cos([float(row[0]) for row in rows]))
+        closes = (way >= 1.0) & (way <= 3.0)
+        said = [line for line in hand.statuses.splitlines() if "closure residual up to" in line]
+        assert len(said) == len(
+            [k for k in range(len(closes)) if closes[k] and (k == 0 or not closes[k - 1])]
+        )
+        assert all("above its bound of 1·10⁻⁷" in line for line in said)
+        colours = (
+            "(one) => [getComputedStyle(one).fill, getComputedStyle(document.querySelector('.bad')).color]"
+        )
+        for where in (".strip", ".chart"):
+            for band in seen.page.query_selector_all(f"{where} .band.misfit"):
+                fill, bad = band.evaluate(colours)
+                assert fill == bad
+        assert len(seen.page.query_selector_all(".strip .band.misfit")) == len(said)
+        command = str(seen.page.inner_text(".command code"))
+        seen.page.click('[data-do="reset"]')
+        frames(seen.page)
+        assert not seen.page.query_selector_all(".band.misfit") and "residual" not in hand.statuses
+        assert seen.messages == []
+    assert main(["--lang", "en", *shlex.split(command)[1:]]) == 2
+    assert "length of link FE" in capsys.readouterr().err
+
+
+def test_limits_are_marked_where_the_motion_ends(running: Any, pages: Callable[..., Path]) -> None:
+    """Each in every curve and along the slider, at its place on the axis, with a sign before its sentence."""
+    with opened(running, pages(LOCKED)) as seen:
+        box = seen.page.evaluate(
+            "(({ x, width }) => [x.baseVal.value, width.baseVal.value])(document.querySelector('.plot .box'))"
+        )
+        places = seen.page.evaluate(
+            "[...document.querySelectorAll('.chart')].map((one) =>"
+            " [...one.querySelectorAll('.mark.limit')].map((mark) => mark.x1.baseVal.value))"
+        )
+        expected = [box[0] + box[1] * at / (2 * np.pi) for at in LIMITS]
+        np.testing.assert_allclose(places, [expected] * len(places), atol=0.01 * box[1] / 100)
+        assert len(seen.page.query_selector_all(".strip .mark.limit")) == 2
+        assert len(seen.page.query_selector_all(".statuses .sign .mark.limit")) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "wide", "scheme"), [(BRANCHED, 400, "light"), (SPHERE, 1440, "dark"), (REDUNDANT, 400, "dark")]
+)
 def test_pages_are_accessible(
     running: Any, pages: Callable[..., Path], name: str, wide: int, scheme: str
 ) -> None:
@@ -346,6 +520,9 @@ def test_pages_are_accessible(
     with opened(running, pages(name), wide, color_scheme=scheme, bypass_csp=True) as seen:
         for box in seen.page.query_selector_all("[data-show]:not(:checked)"):
             box.click()
+        if name == REDUNDANT:
+            seen.page.fill(".rows input[type=text] >> nth=0", "1.05")
+            seen.page.keyboard.press("Tab")
         seen.page.click("summary")
         seen.page.evaluate(AXE.read_text(encoding="utf-8"))
         found = seen.page.evaluate("axe.run()")

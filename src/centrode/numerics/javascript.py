@@ -30,22 +30,24 @@ SIGNS = {"equal": "===", "not_equal": "!==", "both": "&&", "either": "||"}
 """Operations whose signs are other ones than in the table of operations."""
 FUNCTIONS = {
     **{name: f"Math.{name}" for name in MATHEMATICAL},
-    # both give NaN where one argument is
-    "minimum": "Math.min",
-    "maximum": "Math.max",
+    "minimum": "smaller",
+    "maximum": "larger",
     "power": "power",
     "least": "least",
     "greatest": "greatest",
     # a sign there would bind more strongly than in the table: its argument always stands in brackets
     "opposite": "!",
 }
-HELPERS = """const least = (a, b) => a < b || b !== b ? a : b;
+HELPERS = """const larger = (a, b) => a > b || a !== a ? a : b;
+const smaller = (a, b) => a < b || a !== a ? a : b;
+const least = (a, b) => a < b || b !== b ? a : b;
 const greatest = (a, b) => a > b || b !== b ? a : b;
 const power = (a, b) => a === 1 || (a === -1 && Math.abs(b) === Infinity) ? 1 : Math.pow(a, b);
 """
 """What printed functions call beside the functions of JavaScript.
 
-Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has not.
+The greater and the lesser of two numbers, NaN where one of them is: Math.max takes longer, as it looks at the signs of
+zeros. Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has not.
 """
 COSTLY = frozenset({"sin", "cos", "atan2", "exp", "log", "power", "sqrt"})
 """Operations that are worth a row of their own where they depend on the place alone."""
@@ -75,6 +77,8 @@ class PlaceFunction:
     moving : those that change with them
     outputs : rows that are written
     stages : numbers of outputs behind which a call may end; with them `run` takes the stage that is the last one
+    stride : numbers from one row to the next, of n or more; n where it is None
+        A constant one spares the loop a product for each row.
     """
 
     name: str
@@ -83,6 +87,7 @@ class PlaceFunction:
     moving: tuple[str, ...]
     outputs: tuple[Node, ...]
     stages: tuple[int, ...] = ()
+    stride: int | None = None
 
     @property
     def _split(self) -> tuple[Graph, Graph]:
@@ -96,11 +101,15 @@ class PlaceFunction:
         used = frozenset(rest.variables) | frozenset(parts.variables)
         fixed = [name for name in self.fixed if name in used]
         moving = [name for name in self.moving if name in used]
-        before = _function(list(parts.outputs.values()), {}, fixed)
+        before = _function(list(parts.outputs.values()), {}, fixed, self.stride)
         rows = [*fixed, *parts.outputs, *moving]
         nodes = [rest.outputs[str(k)] for k in range(len(self.outputs))]
-        run = _function(nodes, self.of_mechanism, rows, self.stages)
-        lists = f"fixed: {_names(fixed)}, moving: {_names(moving)}, parts: {len(parts.outputs)}, count: {len(nodes)}"
+        run = _function(nodes, self.of_mechanism, rows, self.stride, self.stages)
+        stride = "" if self.stride is None else f"stride: {self.stride}, "
+        lists = (
+            f"{stride}fixed: {_names(fixed)}, moving: {_names(moving)}, "
+            f"parts: {len(parts.outputs)}, count: {len(nodes)}"
+        )
         return f"{self.name}: {{{lists},\nbefore: {before},\nrun: {run}}}"
 
 
@@ -126,7 +135,11 @@ def _escaped(text: str) -> str:
 
 
 def _function(
-    outputs: Sequence[Node], of_mechanism: Mapping[str, int], rows: Sequence[str], stages: Sequence[int] = ()
+    outputs: Sequence[Node],
+    of_mechanism: Mapping[str, int],
+    rows: Sequence[str],
+    stride: int | None = None,
+    stages: Sequence[int] = (),
 ) -> str:
     """A function over places: what is the same everywhere before its loop, the rest inside, stage by stage."""
     order = topological_order(outputs)
@@ -143,15 +156,15 @@ def _function(
     names = {name: f"v[{k}]" for name, k in of_mechanism.items()}
     before, texts = _lines(still, names, list(taken), "c", of_loop=True)
     filled = [
-        f"o.fill({texts[node][0]}, {_start(k)}, {_start(k + 1)});"
+        f"o.fill({texts[node][0]}, {_start(k, stride)}, {_start(k + 1, stride)});"
         for k, node in enumerate(outputs)
         if node not in moving
     ]
-    inside = _stages(outputs, [node for node in order if node in moving], along, texts, stages)
+    inside = _stages(outputs, [node for node in order if node in moving], along, texts, stride, stages)
     used = [
         k for name, k in along.items() if any(x.operation == VARIABLE and x.detail == name for x in order)
     ]
-    read = [f"const x{k} = p[{_row(k)}];" for k in used]
+    read = [f"const x{k} = p[{_row(k, stride)}];" for k in used]
     loop = ["for (let i = 0; i < n; i++) {", *read, *inside, "}"] if inside else []
     last = ", last" if stages else ""
     return f"(v, p, n, o{last}) => {{\n" + "\n".join([*before, *filled, *loop]) + "\n}"
@@ -162,6 +175,7 @@ def _stages(
     order: Sequence[Node],
     along: Mapping[str, int],
     texts: dict[Node, Text],
+    stride: int | None,
     stages: Sequence[int],
 ) -> list[str]:
     """What stands in the loop: lines that compute the moving outputs of each stage, then those that write them."""
@@ -180,7 +194,9 @@ def _stages(
         begun += len(more)
         lines += more
         lines += [
-            f"o[{_row(k)}] = {texts[outputs[k]][0]};" for k in range(first, end) if outputs[k] in moving
+            f"o[{_row(k, stride)}] = {texts[outputs[k]][0]};"
+            for k in range(first, end)
+            if outputs[k] in moving
         ]
         if end < len(outputs):
             lines.append(f"if (last === {stage}) continue;")
@@ -188,12 +204,14 @@ def _stages(
     return lines
 
 
-def _start(k: int) -> str:
+def _start(k: int, stride: int | None) -> str:
+    if stride is not None:
+        return str(k * stride)
     return "0" if k == 0 else "n" if k == 1 else f"{k} * n"
 
 
-def _row(k: int) -> str:
-    return "i" if k == 0 else f"{_start(k)} + i"
+def _row(k: int, stride: int | None) -> str:
+    return "i" if k == 0 else f"{_start(k, stride)} + i"
 
 
 def _lines(

@@ -5,7 +5,8 @@
  * const mechanism = createMechanism(data);      data: what the program says of the mechanism, see `page.program`
  * const frame = mechanism.recompute(values);    values: numbers [SI] in the order of mechanism.parameters
  *
- * A frame has, at every sample: drive (rad, m or s), time, status (index into data.statuses), residual; position,
+ * A frame has, at every sample: drive (rad, m or s), time, status (index into data.statuses), residual, and as misfit the
+ * residual of samples that are open because it is above its bound; position,
  * velocity, acceleration [point][axis]; angle, angularVelocity, angularAcceleration [link] (on the sphere rotation
  * vectors [link][axis], and the angles of data.joints in jointAngle); all of them and what else there is by name in
  * `quantities`. Beside these: events [{kind, drive, group}], reach [low, high], signsChange, possible, residualBound.
@@ -15,7 +16,8 @@
  */
 const createMechanism = (() => {
 "use strict";
-/* printed */
+/* the functions of one mechanism */
+"printed";
 
 const TURN = 2 * Math.PI;
 const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
@@ -23,8 +25,9 @@ const [OK, OPEN, CUT_OFF, SINGULAR] = [0, 1, 2, 3];
 const SUSPECT = 1e-8, SAFETY = 16;
 /* how much more than their bounds numbers may stray */
 const ROOM = 1 + 1e-6;
-/* nodes of the mesh that a wide cell stands for, and cells that it falls into where that tells nothing */
-const WIDE = 12, NARROWER = 4;
+/* cells of a cover: in steps of the mesh those of the first frame, and the widest; the narrowest in units of the widest,
+ * and where no cell is wider than a step; below which doubt two of them become one */
+const WIDE = 12, WIDEST = 32, NARROWEST = 1 / 512, NARROW = 1 / 16, EASY = 0.05;
 /* greatest change of an angle from one sample to the next at which its turns are counted there */
 const MOST_TURN = 0.8;
 /* half width about a change point in which a group is not judged, in units of the path */
@@ -52,7 +55,7 @@ function spacing(x) {
 const sign = (x) => (x > 0 ? 1 : x < 0 ? -1 : x === 0 ? 0 : NaN);
 
 /* whole numbers as NumPy rounds halves: to even */
-function rounded(x) {
+function roundHalfToEven(x) {
   const down = Math.floor(x), rest = x - down;
   if (rest !== 0.5) return rest < 0.5 ? down : down + 1;
   return down % 2 === 0 ? down : down + 1;
@@ -81,6 +84,8 @@ function createMechanism(data) {
   const signs = new Map(Object.entries(data.signs).map(([group, each]) => [Number(group), each]));
   const guards = data.guards.map(([kind, group], k) => ({ kind, group, k, ofRadicand: kind === "radicand" }));
   const byTime = data.mesh.nodes !== undefined;
+  /* laws of time whose second derivative is not known over a cell, but looked at: no cell is wider than one of the mesh */
+  const looked = byTime && !data.mesh.bounded;
 
   /* the mesh of events */
   const mesh = byTime ? Float64Array.from(data.mesh.nodes) : new Float64Array(data.mesh.count);
@@ -141,16 +146,16 @@ function createMechanism(data) {
   }
 
   function preparePlaces(f, rows, count) {
-    const p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * count);
-    f.fixed.forEach((name, k) => p.set(rows[name], k * count));
-    f.before(v, p, count, p.subarray(f.fixed.length * count));
-    const start = (f.fixed.length + f.parts) * count;
+    const stride = f.stride ?? count, p = new Float64Array((f.fixed.length + f.parts + f.moving.length) * stride);
+    f.fixed.forEach((name, k) => p.set(rows[name], k * stride));
+    const parts = p.subarray(f.fixed.length * stride), o = new Float64Array(f.count * stride);
+    f.before(v, p, count, parts);
+    const start = (f.fixed.length + f.parts) * stride;
     const moving = f.moving.map((name, k) => {
       const [word, of] = wordAndOwner(name);
-      return { word, of, row: p.subarray(start + k * count, start + (k + 1) * count) };
+      return { word, of, row: p.subarray(start + k * stride, start + k * stride + count) };
     });
-    const parts = p.subarray(f.fixed.length * count);
-    return { f, p, parts, count, moving, at: rows.parameter, o: new Float64Array(f.count * count) };
+    return { f, p, parts, count, moving, at: rows.parameter, o, row: (k) => o.subarray(k * stride, k * stride + count) };
   }
 
   /* numbers of a row that moves with the numbers of the mechanism; `nodes` of the mesh next to places, where they are known */
@@ -177,41 +182,50 @@ function createMechanism(data) {
   /* Guards over any cells, up to the last one that is looked at: numbers (outputs, cells) in one row, which belongs to
    * its purpose and is written anew by the next call. */
   const rooms = new Map();
+  const movingOfCells = printed.cells.moving.map(wordAndOwner);
   function cellsAt(purpose, { at, half, size }, last) {
-    const f = printed.cells, rowsOfPlaces = f.fixed.length + f.parts + f.moving.length;
+    const f = printed.cells, before = f.fixed.length, rowsOfPlaces = before + f.parts + f.moving.length;
     let room = rooms.get(purpose);
     if (room === undefined || room.size < size) {
       const most = 2 * size;
       room = { size: most, p: new Float64Array(rowsOfPlaces * most), o: new Float64Array(f.count * most) };
       rooms.set(purpose, room);
     }
-    const { p, o } = room, start = (f.fixed.length + f.parts) * size;
-    f.fixed.forEach((name, k) => p.set((name === "half" ? half : at).subarray(0, size), k * size));
-    f.before(v, p, size, p.subarray(f.fixed.length * size));
-    f.moving.forEach((name, k) => {
-      const [word, of] = wordAndOwner(name);
-      fillRow(word, of, p.subarray(start + k * size, start + (k + 1) * size), at);
-    });
+    const { p, o } = room;
+    for (let k = 0; k < before; k++) {
+      const row = f.fixed[k] === "half" ? half : at;
+      for (let i = 0; i < size; i++) p[k * size + i] = row[i];
+    }
+    f.before(v, p, size, f.parts ? p.subarray(before * size) : p);
+    for (let k = 0; k < movingOfCells.length; k++) {
+      const [word, of] = movingOfCells[k], start = (before + f.parts + k) * size;
+      fillRow(word, of, p.subarray(start, start + size), at);
+    }
     f.run(v, p, size, o, last);
     return o;
   }
 
-  /* cells that grow in number: where they are and how wide */
+  /* cells that grow in number: where they are and how wide; of a cover also how wide they may become, and their doubt */
   function cellList() {
-    const cells = { at: new Float64Array(256), half: new Float64Array(256), size: 0 };
-    cells.add = (at, half) => {
-      if (cells.size === cells.at.length) {
-        for (const name of ["at", "half"]) {
-          const longer = new Float64Array(2 * cells.size);
+    const cells = { size: 0 }, numbers = ["at", "half", "widest", "doubt"];
+    for (const name of numbers) cells[name] = new Float64Array(256);
+    cells.add = (at, half, widest = Infinity, doubt = NaN) => {
+      const { size } = cells;
+      if (size === cells.at.length) {
+        for (const name of numbers) {
+          const longer = new Float64Array(2 * size);
           longer.set(cells[name]);
           cells[name] = longer;
         }
       }
-      cells.at[cells.size] = at;
-      cells.half[cells.size++] = half;
+      cells.at[size] = at;
+      cells.half[size] = half;
+      cells.widest[size] = widest;
+      cells.doubt[size] = doubt;
+      cells.size++;
     };
-    cells.addParts = (at, half, parts) => {
-      for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts);
+    cells.addParts = (at, half, parts, widest) => {
+      for (let q = 0; q < parts; q++) cells.add(at + half * ((2 * q + 1) / parts - 1), half / parts, widest);
     };
     return cells;
   }
@@ -238,15 +252,6 @@ function createMechanism(data) {
   const allNodes = Int32Array.from(mesh, (_x, k) => k);
   const startNode = nearestNode(initial);
 
-  /* wide cells that together cover those of the mesh */
-  const wide = (() => {
-    if (byTime || data.counted.length || mesh.length < 2 * WIDE || !guards.length) return null;
-    const low = mesh[0] - 0.5 * step, high = mesh[mesh.length - 1] + 0.5 * step;
-    const count = Math.ceil((high - low) / (WIDE * step)), half = (0.5 * (high - low)) / count;
-    const at = Float64Array.from({ length: count }, (_x, k) => low + half * (2 * k + 1));
-    const places = preparePlaces(printed.cells, { parameter: at, half: new Float64Array(count).fill(half) }, count);
-    return { low, half, count, places };
-  })();
   const cellsOnMesh = (() => {
     let places = null;
     return () => (places ??= preparePlaces(printed.cells, { parameter: mesh, half: halves }, mesh.length));
@@ -256,51 +261,98 @@ function createMechanism(data) {
 
   const largest = new Map();
 
-  /* nodes at which something may happen, by bounds over wide cells, then over narrower ones where these tell nothing; null
-   * where nothing happens, all of them without such cells */
-  const narrow = cellList(), around = cellList();
-  function nodesToSearch() {
-    for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
-    if (wide === null) return guards.length ? allNodes : null;
-    const { low, half, count } = wide;
-    let rough = roughCells(run(wide.places), count, half, true);
-    if (rough === null) return null;
-    narrow.size = 0;
-    for (let i = 0; i < count; i++) if (rough[i]) narrow.addParts(low + half * (2 * i + 1), half, NARROWER);
-    rough = roughCells(cellsAt("narrow", narrow), narrow.size, half / NARROWER, false);
-    if (rough === null) return null;
-    const chosen = new Uint8Array(mesh.length), narrower = half / NARROWER;
-    let some = 0;
-    for (let i = 0; i < narrow.size; i++) {
-      if (!rough[i]) continue;
-      const from = Math.max(0, Math.floor((narrow.at[i] - narrower - low) / step) - 2);
-      const to = Math.min(mesh.length, Math.ceil((narrow.at[i] + narrower - low) / step) + 2);
-      for (let j = from; j < to; j++) if (!chosen[j]) { chosen[j] = 1; some++; }
-    }
-    const nodes = new Int32Array(some);
-    for (let j = 0, k = 0; j < mesh.length; j++) if (chosen[j]) nodes[k++] = j;
-    return nodes;
+  /* the range in which something happens to the samples, and that of the whole mesh */
+  let leastDrive = initial, mostDrive = initial;
+  for (const x of drive) { leastDrive = Math.min(leastDrive, x); mostDrive = Math.max(mostDrive, x); }
+  const ofMotion = rangeOf(leastDrive - BESIDE * unit, mostDrive + BESIDE * unit);
+  const everything = rangeOf(mesh[0], mesh[mesh.length - 1]);
+
+  function rangeOf(low, high) {
+    return { low, high, first: Math.max(0, nodesBelow(low) - 1), last: Math.min(mesh.length - 1, nodesBelow(high)), cover: null };
   }
 
-  /* cells of one half width in which a guard may pass or touch zero; null where none does */
-  function roughCells(o, count, half, measures) {
-    const rough = new Uint8Array(count);
-    let some = false;
-    for (let i = 0; i < count; i++) {
-      let closed = true;
-      for (let k = 0; k < guards.length; k++) {
-        const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
-        const strays = Math.abs(slope) * half + bend * (0.5 * half * half), size = Math.abs(value);
-        const { group, ofRadicand } = guards[k];
-        if (measures && ofRadicand && size + strays > largest.get(group)) largest.set(group, size + strays < Infinity ? size + strays : size);
-        if (closed && !(size > ROOM * strays)) { rough[i] = 1; some = true; }
-        /* where a group is open all over a cell, those behind it have no value there */
-        if (ofRadicand && value < 0 && size > ROOM * strays) closed = false;
+  /* Cells that cover a range, narrow enough to show that nothing happens in them. Numbers change little from one frame
+   * to the next, so one begins with the cells of the last: those that decide nothing are halved, two neighbours that
+   * decide easily become one. */
+  function createCover({ low, high, first, last }) {
+    let cells = cellList(), following = cellList();
+    const judged = cellList(), narrowest = looked ? NARROW : NARROWEST;
+    if (looked) for (let j = first; j <= last; j++) cells.add(mesh[j], halves[j], halves[j]);
+    else {
+      const node = byTime ? (mesh[last] - mesh[first]) / (last - first) : step;
+      cells.addParts(0.5 * (low + high), 0.5 * (high - low), Math.ceil((high - low) / (WIDE * node)), 0.5 * WIDEST * node);
+    }
+
+    /* judge those that are not yet; those that decide nothing leave halves behind them, as long as they are wide */
+    function refine() {
+      judged.size = following.size = 0;
+      const { size, at, half, widest, doubt } = cells;
+      for (let i = 0; i < size; i++) if (doubt[i] !== doubt[i]) judged.add(at[i], half[i]);
+      if (!judged.size) return false;
+      const o = cellsAt("cover", judged);
+      for (let i = 0, q = 0; i < size; i++) {
+        const doubtNow = doubt[i] !== doubt[i] ? doubtOfCell(o, judged.size, q++, half[i]) : doubt[i];
+        if (doubtNow < 1 || half[i] <= narrowest * widest[i]) following.add(at[i], half[i], widest[i], doubtNow);
+        else following.addParts(at[i], half[i], 2, widest[i]);
       }
+      [cells, following] = [following, cells];
+      return true;
     }
-    return some ? rough : null;
+
+    /* the same cells for the next frame, fewer where they decide easily */
+    function join() {
+      following.size = 0;
+      const { size, at, half, widest, doubt } = cells;
+      for (let i = 0; i < size; i++) {
+        const wide = i + 1 < size ? half[i] + half[i + 1] : Infinity;
+        const both = doubt[i] < EASY && doubt[i + 1] < EASY && wide <= Math.min(widest[i], widest[i + 1]);
+        if (!both || Math.abs(at[i + 1] - at[i] - wide) > FINEST * wide) { following.add(at[i], half[i], widest[i]); continue; }
+        following.add(at[i] + half[i + 1], wide, Math.min(widest[i], widest[i + 1]));
+        i++;
+      }
+      [cells, following] = [following, cells];
+    }
+
+    /* nodes about the cells in which something may happen; null where nothing does */
+    return () => {
+      while (refine());
+      const nodes = [];
+      for (let i = 0, next = 0; i < cells.size; i++) {
+        if (cells.doubt[i] < 1) continue;
+        const end = Math.min(mesh.length - 1, nearestNode(cells.at[i] + cells.half[i]) + 2);
+        for (next = Math.max(next, nearestNode(cells.at[i] - cells.half[i]) - 2); next <= end; next++) nodes.push(next);
+      }
+      join();
+      return nodes.length ? Int32Array.from(nodes) : null;
+    };
   }
 
+  /* below 1 where no guard passes or touches zero in a cell; the greatest such number of a guard counts */
+  function doubtOfCell(o, count, i, half) {
+    let most = 0;
+    for (let k = 0; k < guards.length; k++) {
+      const value = o[3 * k * count + i], slope = o[(3 * k + 1) * count + i], bend = o[(3 * k + 2) * count + i];
+      const size = Math.abs(value), doubt = (ROOM * (Math.abs(slope) + 0.5 * bend * half) * half) / size;
+      const { group, ofRadicand } = guards[k];
+      if (ofRadicand && size > largest.get(group)) largest.set(group, size);
+      if (!(doubt < 1)) return Infinity;
+      if (doubt > most) most = doubt;
+      /* where a group is open all over a cell, those behind it have no value there */
+      if (ofRadicand && value < 0) break;
+    }
+    return most;
+  }
+
+  /* nodes of a range at which something may happen; null where nothing does */
+  function nodesToSearch(range) {
+    for (const { group, ofRadicand } of guards) if (ofRadicand) largest.set(group, 0);
+    if (!guards.length) return null;
+    if (data.counted.length) return allNodes.subarray(range.first, range.last + 1);
+    range.cover ??= createCover(range);
+    return range.cover();
+  }
+
+  const around = cellList();
   /* all guards at some nodes of the mesh: a row each of value, slope and bend */
   function guardsAt(nodes) {
     if (nodes.length === mesh.length) return run(cellsOnMesh(), allNodes);
@@ -395,11 +447,10 @@ function createMechanism(data) {
       places.forEach((place, q) => {
         const low = q > 0 ? 0.5 * (places[q - 1] + place) : centre - half;
         const high = q + 1 < places.length ? 0.5 * (place + places[q + 1]) : centre + half;
-        for (const end of [low - place, high - place]) {
-          for (let h = 0, share = 1; h <= HALVINGS; h++, share /= 2) {
-            const way = end * share, wide = 0.25 * Math.abs(way);
-            if (wide > 0) cells.add(place + 0.75 * way, wide);
-          }
+        /* from the left to the right: shorter and shorter, then longer and longer */
+        for (let h = -HALVINGS; h <= HALVINGS + 1; h++) {
+          const way = (h > 0 ? high - place : low - place) * 2 ** -(h > 0 ? HALVINGS + 1 - h : HALVINGS + h), wide = 0.25 * Math.abs(way);
+          if (wide > 0) cells.add(place + 0.75 * way, wide);
         }
       });
     }
@@ -477,33 +528,44 @@ function createMechanism(data) {
     data.counted.forEach(([key, start], c) => {
       const o = onMesh("counted"), raw = o.slice(c * mesh.length, (c + 1) * mesh.length), angle = unwound.get(key);
       fillGaps(raw);
-      angle[startNode] = raw[startNode] + TURN * rounded((start - raw[startNode]) / TURN);
-      for (let j = startNode + 1; j < mesh.length; j++) angle[j] = raw[j] + TURN * rounded((angle[j - 1] - raw[j]) / TURN);
-      for (let j = startNode - 1; j >= 0; j--) angle[j] = raw[j] + TURN * rounded((angle[j + 1] - raw[j]) / TURN);
+      angle[startNode] = raw[startNode] + TURN * roundHalfToEven((start - raw[startNode]) / TURN);
+      for (let j = startNode + 1; j < mesh.length; j++) angle[j] = raw[j] + TURN * roundHalfToEven((angle[j - 1] - raw[j]) / TURN);
+      for (let j = startNode - 1; j >= 0; j--) angle[j] = raw[j] + TURN * roundHalfToEven((angle[j + 1] - raw[j]) / TURN);
     });
   }
 
   /* gaps filled by the last known value on the way from the start; both rows of directions together */
   function fillGaps(row, other = row) {
-    const there = (j) => Number.isFinite(row[j]) && Number.isFinite(other[j]);
-    let known = 0;
-    while (known < row.length && !there(known)) known++;
-    const [value, beside] = known < row.length ? [row[known], other[known]] : [0, 0];
+    const size = row.length;
+    let known = 0, whole = true;
+    for (let j = 0; j < size; j++) if (!(Number.isFinite(row[j]) && Number.isFinite(other[j]))) { whole = false; break; }
+    if (whole) return;
+    while (known < size && !(Number.isFinite(row[known]) && Number.isFinite(other[known]))) known++;
+    const [first, beside] = known < size ? [row[known], other[known]] : [0, 0];
     for (const from of [1, -1]) {
-      let last = -1;
-      for (let j = startNode; j >= 0 && j < mesh.length; j += from) {
-        if (there(j)) { last = j; continue; }
-        row[j] = last >= 0 ? row[last] : value;
-        other[j] = last >= 0 ? other[last] : beside;
+      let last = first, lastBeside = beside;
+      for (let j = startNode; j >= 0 && j < size; j += from) {
+        if (Number.isFinite(row[j]) && Number.isFinite(other[j])) { last = row[j]; lastBeside = other[j]; continue; }
+        row[j] = last;
+        other[j] = lastBeside;
       }
     }
   }
 
+  /* Beyond the motion only the polynomials beside change points are of interest, which end where something happens. */
+  let changesBefore = false;
   function findEvents() {
+    search(changesBefore ? everything : ofMotion);
+    const changes = data.smooth && events.some((event) => event.kind === "change point");
+    if (changes && !changesBefore) search(everything);
+    changesBefore = changes;
+  }
+
+  function search(range) {
     crossings = new Map();
     events = [];
     if (data.counted.length) countAngles();
-    const nodes = nodesToSearch();
+    const nodes = nodesToSearch(range);
     if (nodes === null) return;
     let o = guardsAt(nodes), stale = false;
     for (const guard of guards) {
@@ -536,11 +598,10 @@ function createMechanism(data) {
 
   /* ---- the samples ---- */
 
-  const rows = data.rows.map((_row, k) => atSamples.o.subarray(k * n, (k + 1) * n));
-  const residual = atSamples.o.subarray(rows.length * n, (rows.length + 1) * n);
+  const rows = data.rows.map((_row, k) => atSamples.row(k));
+  const residual = atSamples.row(rows.length);
   const radicands = data.radicands.map((group, k) => {
-    const first = (rows.length + 1 + k) * n;
-    return { group, row: atSamples.o.subarray(first, first + n), guard: guards.findIndex((g) => g.ofRadicand && g.group === group) };
+    return { group, row: atSamples.row(rows.length + 1 + k), guard: guards.findIndex((g) => g.ofRadicand && g.group === group) };
   });
   const signRows = new Map(atSamples.moving.filter((each) => each.word === "sign").map((each) => [each.of, each.row]));
   const turnRows = new Map(atSamples.moving.filter((each) => each.word === "turns").map((each) => [each.of, each.row]));
@@ -549,8 +610,7 @@ function createMechanism(data) {
     const of = name.slice("turns ".length);
     if (name.startsWith("turns ") && !turnRows.has(of)) turnRows.set(of, new Float64Array(n));
   }
-  const status = new Uint8Array(n);
-  const impossible = new Set(data.impossible);
+  const status = new Uint8Array(n), misfit = new Float64Array(n);
 
   const nested = (places) => (Array.isArray(places) ? places.map(nested) : rows[places]);
   const quantities = Object.fromEntries(data.quantities.map((each) => [each.name, nested(each.rows)]));
@@ -563,7 +623,7 @@ function createMechanism(data) {
     angle: only("angle") ?? only("joint_angle"), jointAngle: only("joint_angle"),
     rate: only("angular_velocity"), angularAcceleration: only("angular_acceleration"),
     rateByDrive: only("angular_velocity_coefficient"), angularAccelerationByDrive: only("angular_acceleration_coefficient"),
-    quantities, status, residual, residualBound: data.residual_bound, reach,
+    quantities, status, residual, misfit, residualBound: data.residual_bound, reach,
     events: [], possible: true, signsChange: false, outputs: {},
   };
 
@@ -601,13 +661,6 @@ function createMechanism(data) {
     return again;
   }
 
-  function absent(i, of) {
-    for (let k = 0; k < rows.length; k++) {
-      const [derivative, ofFrame] = data.rows[k];
-      if (of(derivative, ofFrame, rows[k][i])) rows[k][i] = NaN;
-    }
-  }
-
   /* Beside a change point closed forms lose their digits, though the motion runs on smoothly: there it is the polynomial
    * through places on both sides. */
   const nodesAround = Float64Array.from({ length: AROUND }, (_x, q) => Math.cos((Math.PI * (2 * q + 1)) / (2 * AROUND)));
@@ -628,14 +681,16 @@ function createMechanism(data) {
   function mendSample(i, centre, reach) {
     const around = Object.fromEntries(Object.entries(given).map(([name, row]) => [name, new Float64Array(AROUND).fill(row[i])]));
     around.parameter = nodesAround.map((x) => centre + reach * x);
-    const o = run(preparePlaces(printed.motion, around, AROUND)), turning = new Set(data.angles.map(([, place]) => place));
+    const places = preparePlaces(printed.motion, around, AROUND), turning = new Set(data.angles.map(([, place]) => place));
+    run(places);
     const x = (drive[i] - centre) / reach;
-    const mended = rows.map((row, k) => {
+    const smooth = rows.map((_row, k) => {
+      const around = places.row(k);
       let above = 0, below = 0;
       for (let q = 0; q < AROUND; q++) {
-        let value = o[k * AROUND + q];
+        let value = around[q];
         /* angles without turns may jump between two of the places */
-        if (turning.has(k)) value -= TURN * Math.round((value - o[k * AROUND]) / TURN);
+        if (turning.has(k)) value -= TURN * Math.round((value - around[0]) / TURN);
         const share = weights[q] / (x - nodesAround[q]);
         above += share * value;
         below += share;
@@ -643,10 +698,10 @@ function createMechanism(data) {
       const value = above / below;
       return turning.has(k) ? value - TURN * Math.round(value / TURN) : value;
     });
-    if (!mended.every(Number.isFinite)) return;
-    mended.forEach((value, k) => { rows[k][i] = value; });
+    if (!smooth.every(Number.isFinite)) return;
+    smooth.forEach((value, k) => { rows[k][i] = value; });
     /* what the formulas say in a place without digits is no residual of the motion: that of the places around is */
-    residual[i] = o.subarray(rows.length * AROUND, (rows.length + 1) * AROUND).reduce((a, b) => Math.max(a, b));
+    residual[i] = places.row(rows.length).reduce((a, b) => Math.max(a, b));
   }
 
   /* `computed`: whether the rows of the samples are those of these numbers already */
@@ -661,24 +716,38 @@ function createMechanism(data) {
     }
     mend();
     const bound = data.residual_bound;
-    if (events.length || !residual.every((each) => each <= bound)) {
-      for (const row of rows) for (let i = 0; i < n; i++) if (status[i] === OK && !Number.isFinite(row[i])) status[i] = SINGULAR;
+    let closes = true;
+    for (let i = 0; i < n; i++) closes = closes && residual[i] <= bound;
+    if (events.length || !closes) {
+      for (const row of rows) for (let i = 0; i < n; i++) if (!Number.isFinite(row[i]) && status[i] === OK) status[i] = SINGULAR;
     }
+    if (reach[0] > -Infinity || reach[1] < Infinity) {
+      for (let i = 0; i < n; i++) {
+        if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
+      }
+    }
+    for (const i of data.impossible) status[i] = OPEN;
+    if (closes) return;
     for (let i = 0; i < n; i++) {
-      if (status[i] !== OPEN && (drive[i] < reach[0] - margins[i] || drive[i] > reach[1] + margins[i])) status[i] = CUT_OFF;
-      if (impossible.has(i)) status[i] = OPEN;
-      if (status[i] !== OPEN && residual[i] > bound) { status[i] = OPEN; residual[i] = NaN; }
+      if (status[i] === OPEN || !(residual[i] > bound)) continue;
+      status[i] = OPEN;
+      misfit[i] = residual[i];
     }
   }
 
   /* absence is NaN: nothing stands in open samples, and no derivatives in singular ones */
+  const open = new Int32Array(n), partly = new Int32Array(n);
   function settle() {
-    for (let i = 0; i < n; i++) {
-      if (status[i] === OK) continue;
-      if (status[i] === OPEN) { absent(i, () => true); residual[i] = NaN; }
-      else {
-        const withoutSlopes = status[i] === SINGULAR;
-        absent(i, (derivative, ofFrame, x) => !ofFrame && ((withoutSlopes && derivative) || !Number.isFinite(x)));
+    let ofOpen = 0, ofPartly = 0;
+    for (let i = 0; i < n; i++) if (status[i] === OPEN) open[ofOpen++] = i; else if (status[i] !== OK) partly[ofPartly++] = i;
+    for (let q = 0; q < ofOpen; q++) residual[open[q]] = NaN;
+    if (ofOpen || ofPartly) for (let k = 0; k < rows.length; k++) {
+      const row = rows[k], [derivative, ofFrame] = data.rows[k];
+      for (let q = 0; q < ofOpen; q++) row[open[q]] = NaN;
+      if (ofFrame) continue;
+      for (let q = 0; q < ofPartly; q++) {
+        const i = partly[q];
+        if (!Number.isFinite(row[i]) || (derivative && status[i] === SINGULAR)) row[i] = NaN;
       }
     }
   }
@@ -700,20 +769,19 @@ function createMechanism(data) {
   }
 
   function unwindBySamples(row, start) {
-    for (const from of [1, -1]) {
-      for (let i = startSample + from; i >= 0 && i < n; i += from) {
-        const change = row[i] - row[i - from];
-        if (Math.abs(change) < MOST_TURN) continue;
-        if (!(Math.abs(change - TURN * Math.round(change / TURN)) < MOST_TURN)) return false;
-      }
+    let jumps = false;
+    for (let i = 1; i < n; i++) {
+      const change = row[i] - row[i - 1];
+      if (Math.abs(change) < MOST_TURN) continue;
+      if (!(Math.abs(change - TURN * Math.round(change / TURN)) < MOST_TURN)) return false;
+      jumps = true;
     }
-    let shift = TURN * rounded((start - row[startSample]) / TURN), moves = shift !== 0;
-    const first = row[startSample];
+    const first = row[startSample], shift = TURN * roundHalfToEven((start - first) / TURN), moves = shift !== 0;
+    if (!jumps && !moves) return true;
     for (const from of [1, -1]) {
       let before = first, turns = 0;
       for (let i = startSample + from; i >= 0 && i < n; i += from) {
-        const raw = row[i];
-        const change = raw - before;
+        const raw = row[i], change = raw - before;
         if (change > Math.PI) turns -= 1; else if (change < -Math.PI) turns += 1;
         before = raw;
         if (turns !== 0 || moves) row[i] = raw + (shift + TURN * turns);
@@ -723,30 +791,30 @@ function createMechanism(data) {
     return true;
   }
 
-  let rotorsKnown = null;
+  let rotorsOnMesh = null;   // of these numbers, once they are needed
+  const turnsOnMesh = new Int32Array(mesh.length);
   function unwindByMesh(link, row, start) {
-    rotorsKnown ??= onMesh("rotors");
-    const which = data.angles.findIndex(([name]) => name === link), size = mesh.length;
-    const cosine = rotorsKnown.slice(2 * which * size, (2 * which + 1) * size);
-    const sine = rotorsKnown.slice((2 * which + 1) * size, (2 * which + 2) * size);
+    const which = data.angles.findIndex(([name]) => name === link), size = mesh.length, turns = turnsOnMesh;
+    rotorsOnMesh ??= onMesh("rotors");
+    const cosine = rotorsOnMesh.subarray(2 * which * size, (2 * which + 1) * size);
+    const sine = rotorsOnMesh.subarray((2 * which + 1) * size, (2 * which + 2) * size);
     fillGaps(cosine, sine);
     /* rotors of hinges are longer or shorter than 1 */
-    for (let j = 0; j < size; j++) {
+    if (data.space === "sphere") for (let j = 0; j < size; j++) {
       const length = Math.sqrt(cosine[j] * cosine[j] + sine[j] * sine[j]);
-      if (length > 0) cosine[j] /= length;
+      if (length > 0) { cosine[j] /= length; sine[j] /= length; }
     }
-    const turns = new Int32Array(size);
-    for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + passed(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
-    const shift = rounded((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
+    for (let j = 1; j < size; j++) turns[j] = turns[j - 1] + turnChange(cosine[j - 1], sine[j - 1], cosine[j], sine[j]);
+    const shift = roundHalfToEven((start - Math.atan2(sine[startNode], cosine[startNode])) / TURN) - turns[startNode];
     for (let i = 0; i < n; i++) {
       const node = nearSamples[i], angle = row[i];
-      const whole = turns[node] + shift + passed(cosine[node], sine[node], Math.cos(angle), angle);
+      const whole = turns[node] + shift + turnChange(cosine[node], sine[node], Math.cos(angle), angle);
       if (whole !== 0) row[i] = angle + TURN * whole;
     }
   }
 
   /* change of the number of turns from one direction to the next: 1 past half a turn, -1 back */
-  function passed(cosine, sine, nextCosine, nextSine) {
+  function turnChange(cosine, sine, nextCosine, nextSine) {
     const below = (x) => (x < 0 || Object.is(x, -0) ? 1 : 0);
     return cosine + nextCosine < 0 ? below(nextSine) - below(sine) : 0;
   }
@@ -755,6 +823,7 @@ function createMechanism(data) {
     frame.possible = isPossible(values);
     frame.signsChange = false;
     frame.events = events = [];
+    misfit.fill(NaN);
     forcesKnown = false;
     reach[0] = -Infinity;
     reach[1] = Infinity;
@@ -765,7 +834,7 @@ function createMechanism(data) {
       return frame;
     }
     printed.numbers(values, v);
-    rotorsKnown = null;
+    rotorsOnMesh = null;
     findEvents();
     findReach(reach);
     fillMoving(atSamples, nearSamples);
@@ -780,8 +849,7 @@ function createMechanism(data) {
     judgeSamples(data.turns_matter && !turnsChanged);
     settle();
     unwind();
-    const low = Math.min(initial, drive[0], drive[n - 1]) - 1e-9 * unit;
-    const high = Math.max(initial, drive[0], drive[n - 1]) + 1e-9 * unit;
+    const low = leastDrive - 1e-9 * unit, high = mostDrive + 1e-9 * unit;
     frame.events = events.filter((event) => low <= event.drive && event.drive <= high);
     frame.signsChange = data.smooth && frame.events.some((event) => event.kind === "change point");
     return frame;
@@ -796,8 +864,7 @@ function createMechanism(data) {
     if (printed.reactions === undefined || forcesKnown) return reactionNames;
     if (forces === null) {
       forces = preparePlaces(printed.reactions, given, n);
-      const row = (k) => forces.o.subarray(k * n, (k + 1) * n);
-      const named = (places) => (Array.isArray(places) ? places.map(named) : row(places));
+      const named = (places) => (Array.isArray(places) ? places.map(named) : forces.row(places));
       for (const each of data.reactions) reactionNames[each.name] = named(each.rows);
     }
     forcesKnown = true;
@@ -806,7 +873,7 @@ function createMechanism(data) {
   }
 
   function computeReactions() {
-    const { f, p, o, moving } = forces, numbers = f.count - 1;
+    const { f, p, o, moving } = forces, numbers = f.count - 1, stride = o.length / f.count;
     fillMoving(forces, nearSamples);
     for (const { word, of, row } of moving) {
       const known = word === "sign" ? signRows.get(of) : word === "turns" ? turnRows.get(of) : undefined;
@@ -816,8 +883,8 @@ function createMechanism(data) {
     for (let i = 0; i < n; i++) {
       /* where the motion is mended by places around, forces are not: they may pass all bounds there */
       const reached = (status[i] === OK || status[i] === CUT_OFF) && !besideAnyChange(drive[i]);
-      if (reached && o[numbers * n + i] < data.largest_gain) continue;
-      for (let k = 0; k < numbers; k++) o[k * n + i] = NaN;
+      if (reached && o[numbers * stride + i] < data.largest_gain) continue;
+      for (let k = 0; k < numbers; k++) o[k * stride + i] = NaN;
     }
   }
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import Any, TypeAlias
 
@@ -136,18 +138,29 @@ def page_program(
     traced = trace_page(prepared, span, varied, paths)
     acting = trace_reactions(traced.solved, paths, traced.quantities)
     try:
-        functions = _functions(traced, acting, free, varied)
+        functions = _functions(traced, acting, free, varied, len(span.parameter))
     except Unwritten as unwritten:
         what = _("the operation {operation} has no words in JavaScript").format(operation=unwritten.operation)
         raise NotComputedYet("page", what) from None
-    engine = files("centrode.page").joinpath("engine.js").read_text(encoding="utf-8")
-    javascript = engine.replace("/* printed */", f"{HELPERS}const printed = {{\n{functions}\n}};")
+    javascript = _engine().replace(PRINTED, f"{HELPERS}const printed = {{\n{functions}\n}};")
     return PageProgram(
         mechanism,
         parameters,
         _data(mechanism, prepared, span, parameters, varied, traced, acting),
         javascript,
     )
+
+
+PRINTED = '"printed";'
+"""Where the functions of a mechanism stand in the engine."""
+
+
+@cache
+def _engine() -> str:
+    """The engine without its indents and comments: a page is sent by mail."""
+    script = files("centrode.page").joinpath("engine.js").read_text(encoding="utf-8")
+    bare = re.sub(r"^\s*/\*.*?\*/\n", "", script, flags=re.DOTALL | re.MULTILINE)
+    return "".join(f"{line.strip()}\n" for line in bare.splitlines() if line.strip())
 
 
 # The numbers that a page changes.
@@ -217,15 +230,25 @@ PLACE = (PARAMETER, TIME, RATE, SECOND_RATE, HALF)
 """Variables of a place that stay when numbers of the mechanism change."""
 
 
-def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied) -> str:
+PLACES_AROUND = 20
+"""Places at which the engine computes a motion beside a change point: its `AROUND`."""
+
+
+def _functions(
+    traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied, samples: int
+) -> str:
     """All functions of a page as members of an object."""
     of_mechanism = {name: k for k, name in enumerate(_variables(varied, free.paths))}
     moving = [sign_of(group) for group in traced.at_samples]
     moving += [near_of(key) for key in traced.counted] + [turns_of(link) for link in traced.rotors]
     fixed = PLACE
 
-    def function(name: str, outputs: Sequence[Node], stages: Sequence[int] = ()) -> str:
-        return PlaceFunction(name, of_mechanism, fixed, tuple(moving), tuple(outputs), tuple(stages)).source
+    def function(
+        name: str, outputs: Sequence[Node], stages: Sequence[int] = (), stride: int | None = None
+    ) -> str:
+        return PlaceFunction(
+            name, of_mechanism, fixed, tuple(moving), tuple(outputs), tuple(stages), stride
+        ).source
 
     def of_guards(name: str, numbers: Sequence[Sequence[Node]]) -> str:
         # what looks at one guard computes nothing of those behind it
@@ -233,10 +256,11 @@ def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, va
         stages = [each * (k + 1) for k in range(len(numbers))]
         return function(name, [x for some in numbers for x in some], stages)
 
+    stride = max(samples, PLACES_AROUND)
     motion = [row.node for row in traced.rows] + [traced.residual, *traced.at_samples.values()]
     members = [
         f"numbers: {once(_numbers(free, varied), {path: k for k, path in enumerate(free.paths)})}",
-        function("motion", motion),
+        function("motion", motion, stride=stride),
         of_guards("cells", list(traced.cells.values())),
         of_guards("curves", list(traced.curves.values())),
         of_guards("bounds", list(traced.bounds.values())),
@@ -244,7 +268,7 @@ def _functions(traced: PageTrace, acting: TracedReactions, free: FreeNumbers, va
         function("counted", list(traced.counted.values())),
     ]
     if acting.rows:
-        members.append(function("reactions", acting.rows))
+        members.append(function("reactions", acting.rows, stride=stride))
     return ",\n".join(members)
 
 
@@ -319,7 +343,7 @@ def _data(
         "counted": [[key, float(ready.assembled.angles.get(key, 0.0))] for key in traced.counted],
         "smooth": mechanism.assembly.continuation == "smooth",
         "impossible": [int(k) for k in np.nonzero(path.impossible(span.parameter))[0]],
-        "mesh": _mesh(path, span),
+        "mesh": _mesh(path, span, traced),
         "places": _places(span),
     }
 
@@ -376,11 +400,11 @@ def _quantity(ready: Ready, quantity: Any) -> dict[str, Any]:
     }
 
 
-def _mesh(path: Path, span: SampleGrid) -> dict[str, Any]:
+def _mesh(path: Path, span: SampleGrid, traced: PageTrace) -> dict[str, Any]:
     """The nodes on which events are looked for; of one drive by their first one and their distance."""
     nodes = mesh_of(path, span.parameter)
     if path.by_time:
-        return {"nodes": nodes.tolist()}
+        return {"nodes": nodes.tolist(), "bounded": traced.laws_are_bounded}
     first = round((nodes[0] - path.initial) / path.step - OFF_GRID)
     return {"first": first, "count": len(nodes), "off": OFF_GRID, "step": float(path.step)}
 

@@ -175,6 +175,7 @@ class PageTrace:
     rotors : link, or key of a hinge -> cosine and sine of its angle
     counted : what gears and wheels depend on -> its angle without turns
     hinges : key of a hinge -> its angle [rad] in the initial position
+    laws_are_bounded : whether bends of the drives over cells are bounds: of laws of time they are looked at in three places
     missing : why masses and loads are not reduced; empty where they are, or where there are none
     """
 
@@ -191,6 +192,7 @@ class PageTrace:
     counted: Mapping[str, Node]
     hinges: Mapping[str, float]
     solved: Solved
+    laws_are_bounded: bool
     missing: str
 
 
@@ -231,6 +233,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[s
         {key: as_node(x) for key, x in policy.counted.items()},
         {hinge_key(hinge): hinge.start for hinge in hinges},
         solved,
+        not kinematics.path.by_time or _laws_are_linear(kinematics.path),
         missing,
     )
 
@@ -415,6 +418,13 @@ def _bent_drives(path: Path, cells: Cells) -> dict[str, Number]:
         bend = 0.0 if still else ROOM * m.max(m.max(sizes[0], sizes[1]), sizes[2])
         values[drive] = Bent(here.coefficients[0], here.coefficients[1], bend, cells)
     return values
+
+
+def _laws_are_linear(path: Path) -> bool:
+    """Whether no drive accelerates: then nothing has to be looked at in a cell, however wide it is."""
+    laws = path.drive_values(NODE_JETS, Jet.variable(variable(PARAMETER), 2)).values()
+    seconds = [law.derivative(2) for law in laws if isinstance(law, Jet)]
+    return all(isinstance(second, float) and second == 0.0 for second in seconds)
 
 
 def _curves(

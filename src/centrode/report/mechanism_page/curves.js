@@ -167,7 +167,8 @@ class Chart {
       label.textContent = told;
     }
     const horizontal = stepsOf(least, most, 5, this.course.unit === "°" && most - least > 20);
-    for (const tick of ticksOf(least, most, horizontal)) {
+    // without a value there is nothing to read
+    for (const tick of known.length ? ticksOf(least, most, horizontal) : []) {
       make("line", { class: Math.abs(tick) < 1e-9 * horizontal ? "zero" : "grid", x1: LEFT, x2: wide - RIGHT, y1: up(tick), y2: up(tick) }, svg);
       const label = make("text", { x: LEFT - 6, y: up(tick) + 4, "text-anchor": "end" }, svg);
       label.textContent = this.tick(tick, horizontal);
@@ -178,15 +179,13 @@ class Chart {
     const what = make("text", { class: "axis", x: LEFT - 6, y: 12, "text-anchor": "end" }, svg);
     what.textContent = this.course.unit;
     this.lines.forEach((line, k) => {
-      let d = "", red = "", pen = false;
+      let d = "", pen = false;
       for (let sample = 0; sample <= last; sample += 1) {
         const value = line.value(sample), seen = Number.isFinite(value);
         if (seen) d += `${pen ? "L" : "M"}${text(this.x(sample))} ${text(up(value))}`;
-        if (seen && model.strained(sample)) red += `M${text(this.x(sample))} ${text(up(value))}h0`;
         pen = seen;
       }
       make("path", { class: `line ${hueOf(k)}`, d }, svg);
-      if (red) make("path", { class: "strained", d: red }, svg);
     });
     this.cursor = make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg);
     this.dots = this.lines.map((_line, k) => make("circle", { class: `spot ${hueOf(k)}`, r: 3.5 }, svg));
@@ -215,9 +214,10 @@ class Chart {
   // Where the mechanism is not reached, and its limits.
   bands(svg) {
     const { model } = this;
-    for (const { from, to, status } of piecesOf(model)) {
+    for (const piece of piecesOf(model)) {
+      const { from, to, status } = piece;
       if (model.data.reached[status]) continue;
-      make("rect", { class: `band status-${status}`, x: this.x(Math.max(0, from - 0.5)), y: UPPER,
+      make("rect", { class: bandOf(piece), x: this.x(Math.max(0, from - 0.5)), y: UPPER,
         width: this.x(Math.min(model.last, to + 0.5)) - this.x(Math.max(0, from - 0.5)), height: TALL - UPPER - LOWER }, svg);
     }
     for (const event of model.frame.events) {
@@ -245,13 +245,14 @@ class Chart {
 }
 
 const markOf = (event) => (event.kind === "limit" ? "limit" : "change");
-// The samples of one status behind one another.
+const bandOf = ({ status, fits }) => `band status-${status}${fits ? "" : " misfit"}`;
+// The samples of one status behind one another; those at which a constraint does not fit apart.
 const piecesOf = (model) => {
   const { status } = model.frame, found = [];
   for (let sample = 0; sample <= model.last; sample += 1) {
-    const now = found[found.length - 1];
-    if (now && now.status === status[sample]) now.to = sample;
-    else found.push({ from: sample, to: sample, status: status[sample] });
+    const now = found[found.length - 1], fits = model.fits(sample);
+    if (now && now.status === status[sample] && now.fits === fits) now.to = sample;
+    else found.push({ from: sample, to: sample, status: status[sample], fits });
   }
   return found;
 };

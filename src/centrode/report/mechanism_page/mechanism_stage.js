@@ -48,7 +48,7 @@ class MechanismStage extends Stage {
     make("path", { d: "M-60 -60L60 60M-60 60L60 -60", stroke: body.colour }, group);
     // a link that is hinged to the frame turns about its hinge, which has its own name
     if (body.points.some((point) => point < this.model.data.program.fixed)) return group;
-    const name = make("text", { x: 90, y: -70 }, group);
+    const name = make("text", { x: 90, y: 190 }, group); // joints have theirs above
     name.textContent = body.name;
     return group;
   }

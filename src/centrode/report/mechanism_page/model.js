@@ -166,8 +166,9 @@ class Model {
   reached(sample) {
     return this.data.reached[this.frame.status[sample]];
   }
-  strained(sample) {
-    return this.frame.residual[sample] > this.frame.residualBound;
+  // Open because a constraint that repeats others does not fit there: its residual is above the bound.
+  fits(sample) {
+    return !(this.frame.misfit[sample] > this.frame.residualBound);
   }
   // The samples about the initial position that hang together with it.
   piece() {

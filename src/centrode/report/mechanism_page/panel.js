@@ -81,34 +81,28 @@ class Statuses {
     const { model } = this, { words, frame } = model, said = [], notes = [...model.data.drawing.notDrawn];
     if (!frame.possible) said.push({ kind: "bad", text: words.impossible });
     else {
-      for (const { from, to, status } of piecesOf(model)) {
+      for (const { from, to, status, fits } of piecesOf(model)) {
         if (model.data.reached[status]) continue;
-        said.push({ kind: "bad", text: fill(from === to ? words.at_one : words.between, {
-          status: words.statuses[status], from: model.place(from), to: model.place(to),
+        said.push({ kind: "bad", sign: bandOf({ status, fits }), text: fill(from === to ? words.at_one : words.between, {
+          status: fits ? words.statuses[status] : this.misfit(status, from, to), from: model.place(from), to: model.place(to),
         }) });
       }
       const limits = frame.events.filter((event) => markOf(event) === "limit");
       const places = [...new Set(limits.map((event) => model.placeOf(event.drive)))];
-      if (places.length) said.push({ kind: "limit", text: fill(words.limits_at, { places: places.join("; ") }) });
-      let strained = 0, worst = 0;
-      for (let k = 0; k <= model.last; k += 1) {
-        if (!model.strained(k) || !model.reached(k)) continue;
-        strained += 1;
-        worst = Math.max(worst, frame.residual[k]);
-      }
-      if (strained) said.push({ kind: "bad", text: fill(words.residual, { worst: model.spelling.number(worst, 2), bound: model.spelling.number(frame.residualBound, 2) }) });
+      if (places.length) said.push({ kind: "", sign: "mark limit", text: fill(words.limits_at, { places: places.join("; ") }) });
     }
     for (const cam of model.data.drawing.cams) {
       const { fits, arm, length } = camNow(model, cam), { factor, label } = model.data.units.m;
       const told = (value) => withUnit(model.spelling.number(value * factor), label);
       if (!fits) notes.push(fill(words.cam_arm, { arm: told(arm), length: told(length) }));
     }
-    const command = frame.signsChange ? commandOf(model) : "";
+    const misfit = !piecesOf(model).every((piece) => piece.fits), command = frame.signsChange || misfit ? commandOf(model) : "";
     const key = JSON.stringify([said, notes, command]);
     if (key !== this.key) {
       this.key = key;
-      const items = said.slice(0, 12).map((one) => element("p", { className: one.kind }, one.text));
+      const items = said.slice(0, 12).map((one) => element("p", { className: one.kind }, ...this.sign(one.sign), one.text));
       if (!said.length && !frame.signsChange) items.push(element("p", { className: "good" }, words.all_reached));
+      if (misfit) items.push(this.advice("misfit", words.misfit, command));
       if (frame.signsChange) items.push(this.changePoints(command));
       items.push(...notes.map((told) => element("p", { className: "omitted" }, told)));
       this.holder.replaceChildren(...items);
@@ -119,10 +113,31 @@ class Statuses {
   changePoints(command) {
     const { words } = this.model;
     const places = [...new Set(this.model.frame.events.filter((event) => markOf(event) !== "limit").map((event) => this.model.placeOf(event.drive)))];
-    const button = element("button", { type: "button" }, words.copy_command);
-    button.addEventListener("click", () => this.copy(command, words.command_copied));
-    return element("div", { className: "change" }, element("p", {}, fill(words.change_points, { places: places.join("; ") })),
+    return this.advice("change", fill(words.change_points, { places: places.join("; ") }), command);
+  }
+
+  // What helps, with a command to copy.
+  advice(kind, told, command) {
+    const button = element("button", { type: "button" }, this.model.words.copy_command);
+    button.addEventListener("click", () => this.copy(command, this.model.words.command_copied));
+    return element("div", { className: `advice ${kind}` }, element("p", {}, ...this.sign(kind === "change" && "mark change"), told),
       element("div", { className: "command" }, element("code", {}, command), button));
+  }
+
+  // What stands for it along the slider and in the curves.
+  sign(name) {
+    if (!name) return [];
+    const svg = make("svg", { class: "sign", viewBox: "0 0 14 14", "aria-hidden": "true" });
+    if (name.startsWith("band")) make("rect", { class: name, width: 14, height: 14 }, svg);
+    else make("line", { class: name, x1: 7, x2: 7, y1: 0, y2: 14 }, svg);
+    return [svg];
+  }
+
+  misfit(status, from, to) {
+    const { words, frame, spelling } = this.model, worst = greatestOf(frame.misfit.subarray(from, to + 1));
+    return fill(words.misfit_status, {
+      status: words.statuses[status], worst: spelling.number(worst, 2), bound: spelling.number(frame.residualBound, 2),
+    });
   }
 
   // The same along the slider of the player.
@@ -130,13 +145,11 @@ class Statuses {
     const { model, band } = this, last = model.last || 1;
     band.replaceChildren();
     const svg = make("svg", { viewBox: `0 0 1000 10`, preserveAspectRatio: "none", "aria-hidden": "true" });
-    for (const { from, to, status } of piecesOf(model)) {
+    for (const piece of piecesOf(model)) {
+      const { from, to, status } = piece;
       if (model.data.reached[status]) continue;
       const start = (1000 * Math.max(0, from - 0.5)) / last, end = (1000 * Math.min(last, to + 0.5)) / last;
-      make("rect", { class: `band status-${status}`, x: start, y: 0, width: end - start, height: 10 }, svg);
-    }
-    for (let k = 0; k <= model.last; k += 1) {
-      if (model.strained(k) && model.reached(k)) make("rect", { class: "strained", x: (1000 * k) / last - 1, y: 0, width: 3, height: 10 }, svg);
+      make("rect", { class: bandOf(piece), x: start, y: 0, width: end - start, height: 10 }, svg);
     }
     for (const event of model.frame.events) {
       const sample = sampleOf(model, event.drive);

@@ -9,6 +9,11 @@ const packed = (told) => btoa(String.fromCharCode(...new TextEncoder().encode(to
 const unpacked = (text) => new TextDecoder("utf-8", { fatal: true }).decode(
   Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0)));
 
+// Three rows of three numbers, square to each other and as long as 1: how the sphere is turned.
+const isRotation = (rows) => Array.isArray(rows) && rows.length === 3
+  && rows.every((row) => Array.isArray(row) && row.length === 3 && row.every(Number.isFinite))
+  && rows.every((row, k) => rows.every((other, j) => Math.abs(dot(row, other) - (j === k ? 1 : 0)) < 1e-6));
+
 class StateLink {
   constructor(model, stage, curves, boxes) {
     Object.assign(this, { model, stage, curves, boxes });
@@ -48,15 +53,15 @@ class StateLink {
   }
 
   right(state) {
-    const { model } = this, number = Number.isFinite;
-    const values = state && state.v && typeof state.v === "object" ? Object.entries(state.v) : null;
+    const { model, stage } = this, number = Number.isFinite;
+    const values = state && state.v && typeof state.v === "object" && !Array.isArray(state.v) ? Object.entries(state.v) : null;
     return values !== null && number(state.p) && number(state.r) && Array.isArray(state.c) && Array.isArray(state.s)
       && values.every(([path, value]) => {
         const one = model.parameters[model.places.get(path)];
         return one && number(value) && value >= one.least && value <= one.most;
       })
-      && (state.w === undefined || (Array.isArray(state.w) && state.w.length === 3
-        && state.w.every((row) => Array.isArray(row) && row.length === 3 && row.every(number))));
+      && (state.w === undefined || isRotation(state.w))
+      && (state.k === undefined || !stage.body || [...stage.body.options].some((one) => one.value === state.k));
   }
 
   put(state) {

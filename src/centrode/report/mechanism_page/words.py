@@ -26,8 +26,10 @@ def words_of_page() -> dict[str, object]:
         "at_one": _("At {from}: {status}."),
         "between": _("From {from} to {to}: {status}."),
         "limits_at": _("Limits: {places}."),
-        "residual": _(
-            "The closure residual reaches {worst}, above its bound of {bound}; such samples are marked in red."
+        "misfit_status": _("{status}, closure residual up to {worst}, above its bound of {bound}"),
+        "misfit": _(
+            "In red: a constraint that repeats others does not fit these dimensions. This command names it, and how far "
+            "it is off:"
         ),
         "cam_arm": _("The cam is not drawn: it is made for an arm of {length}, and the arm is {arm} long."),
         "all_reached": _("The mechanism reaches every position."),
@@ -40,6 +42,6 @@ def words_of_page() -> dict[str, object]:
         "link_copied": _("The link is copied: it keeps the dimensions, the position and the view."),
         "table_copied": _("The table is copied as CSV."),
         "taken": _("The dimensions, the position and the view of the link are shown."),
-        "damaged": _("The link is damaged: the mechanism of the file is shown. Copy the whole link again."),
-        "foreign": _("The link belongs to another mechanism: the mechanism of the file is shown."),
+        "damaged": _("The link is damaged and changes nothing. Copy the whole link again."),
+        "foreign": _("The link belongs to another mechanism and changes nothing."),
     }
