@@ -10,7 +10,8 @@ import pytest
 
 import centrode as ct
 from centrode.app.documents import read_document
-from centrode.app.operations import Patch
+from centrode.app.operations import apply_operation
+from centrode.app.patches import Patch
 from centrode.app.sketch import Sketch
 from centrode.errors import InputError
 from centrode.model.examples import example_names, example_text
@@ -42,7 +43,7 @@ speed = 1
 def patched(text, *operations):
     patch = Patch(text, HERE)
     for operation in operations:
-        patch.apply(operation)
+        apply_operation(patch, operation)
     return patch
 
 
@@ -80,7 +81,7 @@ def test_a_slider_crank_is_drawn():
 def test_dropping_on_a_joint_makes_a_hinge_and_joining_too():
     apart = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3]})
     assert Sketch(apart.document).owners("E") == ["EF"]
-    apart.apply({"do": "join", "points": ["E", "B"]})
+    apply_operation(apart, {"do": "join", "points": ["E", "B"]})
     assert sorted(Sketch(apart.document).owners("B")) == ["AB", "BC", "EF"]
     hinged = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3], "from_point": "B"})
     assert sorted(Sketch(hinged.document).owners("B")) == ["AB", "BC", "BE"]
@@ -215,7 +216,7 @@ REFUSALS = [
 def test_what_cannot_be_is_refused_and_nothing_changes(operation, said):
     patch = Patch(FOUR_BAR, HERE)
     with pytest.raises(InputError, match=said.replace("(", r"\(")):
-        patch.apply(operation)
+        apply_operation(patch, operation)
     assert patch.text == FOUR_BAR
 
 
@@ -231,7 +232,7 @@ def test_deleting_and_renaming_any_object_keeps_the_comments(name):
         ):
             patch = Patch(text, HERE)
             try:
-                patch.apply(operation)
+                apply_operation(patch, operation)
             except InputError:
                 assert patch.text == text
                 continue

@@ -16,8 +16,9 @@ from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
 from centrode.app.move_drags import motion_answer, place_on_way, way_of
-from centrode.app.operations import Patch, apply_operations
+from centrode.app.operations import apply_operations
 from centrode.app.panels import panel_of, topic_list, topics_of
+from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
 from centrode.app.scene import scene_of
 from centrode.app.sketch import Sketch
@@ -205,9 +206,8 @@ class Workbench:
             return self._move_answer(message, document, point, to)
         sketch = Sketch(document)
         if message.get("drop"):
-            patch = Patch(document.text, self.work.folder)
-            patch.apply({"do": "move_point", "point": point, "to": list(to)})
-            return self._patch_answer(patch)
+            move = {"do": "move_point", "point": point, "to": list(to)}
+            return self._patch_answer(apply_operations(document.text, self.work.folder, [move]))
         reshaped = reshape(sketch, point, to, self.work.folder)
         places = [list(reshaped.places.get(name, (math.nan, math.nan))) for name in sketch.points]
         angles = [math.nan] * len(sketch.links)

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from centrode.app.documents import Document
-from centrode.app.sketch import list_of_tables
+from centrode.app.quantity_texts import field_text
+from centrode.app.sketch import display_units, list_of_tables
 from centrode.cams.cam import cam as course_of
 from centrode.cams.followers.base_circle import has_profile
 from centrode.cams.results import cam_profile
 from centrode.errors import CentrodeError
-from centrode.locale import _, decimal_mark
+from centrode.locale import _
 from centrode.model.follower_cam import PlateCam
-from centrode.quantities import ANGLES, LENGTHS
+from centrode.model.units import number_and_unit
 
 SAMPLES = 361
 CURVES = (
@@ -24,24 +24,15 @@ CURVES = (
     "modified trapezoid",
 )  # fmt: skip
 """Curves of a segment that need nothing but its ends."""
-DIGITS = 6
-_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
     """The scene of a cam, right or not."""
-    display = document.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    length, angle = display.get("length", "m"), display.get("angle", "rad")
     title = document.tables.get("title")
     return {
         "title": _(title) if isinstance(title, str) else "",
         "kind": "cam",
-        "unit": length if length in LENGTHS else "m",
-        "display": {
-            "length": {"unit": length, "factor": LENGTHS.get(length, 1.0)},
-            "angle": {"unit": angle, "factor": ANGLES.get(angle, 1.0)},
-        },
+        "display": display_units(document.tables),
         "size": [[-1.0, -1.0], [1.0, 1.0]],
         **{
             key: []
@@ -146,16 +137,16 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
     for key, value in table.items():
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             continue
-        found = _QUANTITY.fullmatch(str(value))
+        found = number_and_unit(str(value))
         if found is None:
             continue
-        number = float(found.group(1))
+        number = float(found[0])
         yield {
             "of": owner,
             "path": f"{path}.{key}",
             "name": key.replace("_", " "),
             "value": number,
-            "unit": found.group(2),
-            "shown": f"{number:.{DIGITS}g}".replace(".", decimal_mark()),
+            "unit": found[1],
+            "shown": field_text(number),
             "locked": False,
         }

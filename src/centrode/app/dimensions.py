@@ -6,11 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from centrode.app.sketch import Sketch
-from centrode.locale import decimal_mark
-from centrode.quantities import ANGLES, LENGTHS
-
-DIGITS = 6
+from centrode.app.quantity_texts import field_text
+from centrode.app.sketch import Sketch, display_units
 
 
 def dimension_rows(sketch: Sketch) -> list[dict[str, Any]]:
@@ -19,24 +16,16 @@ def dimension_rows(sketch: Sketch) -> list[dict[str, Any]]:
 
 
 def _rows(sketch: Sketch) -> Iterator[dict[str, Any]]:
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    length, angle = display.get("length", "m"), display.get("angle", "rad")
-    units = {
-        "length": (length, LENGTHS.get(length, 1.0)),
-        "angle": (angle, ANGLES.get(angle, 1.0)),
-    }
+    units = display_units(sketch.tables)
     for owner, path, name, value, kind in _numbers(sketch):
-        unit, factor = units[kind]
-        shown = value * factor
-        text = f"{shown:.{DIGITS}g}".replace(".", decimal_mark())
+        shown = value * units[kind]["factor"]
         yield {
             "of": owner,
             "path": path,
             "name": name,
             "value": shown,
-            "unit": unit,
-            "shown": text,
+            "unit": units[kind]["unit"],
+            "shown": field_text(shown),
             "locked": path in sketch.marks["locked"],
         }
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from centrode.app.quantity_texts import written_quantity
-from centrode.app.scene import edit_refusal, guide_line
-from centrode.app.sketch import Pose, Sketch, Vector, number
+from centrode.app.sketch import Pose, Sketch, Vector, guide_line, list_of_tables, number
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
@@ -254,6 +253,21 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
 
 
 # Where the joint may stand: guides and locked lengths hold.
+
+
+def edit_refusal(sketch: Sketch, name: str) -> str:
+    """Why a point cannot be dragged to change lengths; empty where it can."""
+    if sketch.on_sphere:
+        return _("on the sphere lengths and angles are changed in the text or in the fields")
+    if name in sketch.marks["fixed"]:
+        return _("this joint is held: switch Fixed off to drag it")
+    if name not in sketch.places:
+        return _("its place is not known: correct the description first")
+    wheels = list_of_tables(sketch.tables, "rolling")
+    turned = {wheel.get("centre") for wheel in wheels}
+    if name in turned:
+        return _("the centre of a rolling wheel follows from its track: change the radii in the text")
+    return ""
 
 
 def allowed_place(sketch: Sketch, point: str, to: tuple[float, float]) -> tuple[Vector, str]:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.app.documents import Document
-from centrode.app.sketch import Vector
+from centrode.app.sketch import Sketch, Vector
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.path import even_grid
@@ -118,6 +118,15 @@ def _kept_way(key: _ById) -> Way:
     points, slopes, bends = np.moveaxis(moving, 3, 1)
     reached = np.isfinite(points).all(axis=(1, 2)) & (samples.status[0] != Status.CUT_OFF)
     return Way(fitted, on_path, grid.parameter, points, slopes, bends, reached, closes, tuple(layout.points))
+
+
+def move_refusal(sketch: Sketch, name: str) -> str:
+    """Why a point cannot be dragged to move the mechanism; empty where it can."""
+    if name in sketch.fixed:
+        return _("a point of the frame does not move")
+    if sketch.document.prepared is None:
+        return _("the mechanism cannot move yet")
+    return ""
 
 
 def place_on_way(way: Way, point: str, to: Array, present: float | None) -> float:

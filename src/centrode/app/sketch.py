@@ -14,6 +14,7 @@ from centrode.errors import InputError
 from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME, two_points
 from centrode.model.units import to_si
+from centrode.quantities import ANGLES, LENGTHS
 
 Vector: TypeAlias = tuple[float, ...]
 Pose: TypeAlias = tuple[Vector, float]
@@ -217,6 +218,58 @@ class Sketch:
         at = list(self.places.values())
         spans = [max(x) - min(x) for x in zip(*at, strict=True)] if at else []
         return max(spans, default=0.0) or 1.0
+
+
+def guide_name(sketch: Sketch, number_of_guide: int) -> str:
+    """How the workbench names a guide: not as its point, which is an object of its own."""
+    return f"guide {number_of_guide + 1}"
+
+
+def guide_line(sketch: Sketch, number_of_guide: int) -> tuple[Vector | None, float | None]:
+    """A place on the line of a guide [m] and its angle [rad], both in the axes of the frame."""
+    guide = sketch.guides[number_of_guide]
+    on, point = guide.get("on", FRAME), str(guide.get("point"))
+    direction = direction_angle(guide.get("direction"))
+    given = guide.get("through")
+    here = sketch.places.get(point)
+    if on == FRAME:
+        through = sketch.places.get(given) if isinstance(given, str) else coordinates(given)
+        return (here if through is None else through), direction
+    if on not in sketch.poses:
+        return here, None
+    origin, angle = sketch.poses[on]
+    turned = None if direction is None else direction + angle
+    if isinstance(given, str):
+        return sketch.places.get(given, here), turned
+    local = coordinates(given)
+    if local is None:
+        return here, turned
+    x, y = rotate_vector(local, angle)
+    return (origin[0] + x, origin[1] + y), turned
+
+
+def direction_angle(value: object) -> float | None:
+    """Angle [rad] of a direction that is given as [x, y] or as an angle."""
+    if isinstance(value, list):
+        place = coordinates(value)
+        return None if place is None else math.atan2(place[1], place[0])
+    return number(value, "angle")
+
+
+def load_name(number_of_load: int) -> str:
+    """How the workbench names a load."""
+    return f"load {number_of_load + 1}"
+
+
+def display_units(tables: Tables) -> dict[str, dict[str, Any]]:
+    """Units in which lengths and angles are shown, with what SI is multiplied by."""
+    display = _table(tables, "display")
+    units = {}
+    for kind, known, usual in (("length", LENGTHS, "m"), ("angle", ANGLES, "rad")):
+        unit = display.get(kind, usual)
+        unit = unit if unit in known else usual
+        units[kind] = {"unit": unit, "factor": known[unit]}
+    return units
 
 
 def number(value: object, kind: str) -> float | None:
