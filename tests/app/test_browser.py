@@ -44,7 +44,7 @@ def places_of(one: Bench) -> dict[str, np.ndarray]:
     return {name: np.array(place, float) for name, place in given.items()}
 
 
-def turned(vector: np.ndarray) -> np.ndarray:
+def quarter_turn(vector: np.ndarray) -> np.ndarray:
     return np.array([-vector[1], vector[0]])
 
 
@@ -69,9 +69,9 @@ def test_a_four_bar_from_an_empty_canvas(running: Any, server: Served) -> None:
         speed = float(str(speed).split()[0])
         one.choose_curve(0, "point C velocity")
         a, b, c, d = (at[name] for name in "ABCD")
-        of_b = speed * turned(b - a)
-        rates = np.linalg.solve(np.column_stack([turned(c - b), -turned(c - d)]), -of_b)
-        velocity = rates[1] * turned(c - d)
+        of_b = speed * quarter_turn(b - a)
+        rates = np.linalg.solve(np.column_stack([quarter_turn(c - b), -quarter_turn(c - d)]), -of_b)
+        velocity = rates[1] * quarter_turn(c - d)
         shown = one.values()
         scale = max(abs(velocity))
         assert abs(shown["vx(C)"] - velocity[0]) < 2 * SIX_DIGITS * max(scale, 1)
@@ -341,6 +341,22 @@ def test_units_are_those_of_the_language(running: Any, server: Served) -> None:
         one.page.keyboard.press(" ")
         one.page.wait_for_selector('[data-path="links.AB.length"]')
         assert one.page.locator(".side .unit").first.inner_text() == "м"
+
+
+def test_the_address_of_the_window_does_not_hold_the_token(running: Any, server: Served) -> None:
+    """It is loaded again all the same; a window that nobody has given the token says what to do."""
+    with bench(running, server.address) as one:
+        one.template("crank-rocker")
+        assert server.token not in one.page.url
+        before = one.text
+        one.page.reload()
+        one.page.wait_for_selector(".bench")
+        one.settle()
+        assert one.text == before and server.token not in one.page.url
+        stranger = one.page.context.new_page()
+        stranger.goto(f"http://127.0.0.1:{server.port}/")
+        stranger.wait_for_selector(".refusal")
+        assert "centrode app" in stranger.inner_text(".refusal")
 
 
 def test_two_browsers_at_once(running: Any, server: Served) -> None:

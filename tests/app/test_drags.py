@@ -24,7 +24,7 @@ HERE = Path()
 EXAMPLES = [name for name in example_names() if getattr(ct.example(name), "space", "") == "plane"]
 
 
-def sketched(text):
+def sketch_of(text):
     return Sketch(read_document(text, HERE))
 
 
@@ -32,7 +32,7 @@ def sketched(text):
 def test_the_dragged_joint_stands_there_in_the_motion_of_the_edited_description(name):
     """Independent of the editor: the file that it wrote is read and moved by the package."""
     text = example_text(name)
-    sketch = sketched(text)
+    sketch = sketch_of(text)
     done = 0
     for point in sketch.points:
         if edit_refusal(sketch, point):
@@ -88,7 +88,7 @@ def test_two_locks_leave_no_freedom():
 
 
 def test_a_slider_stays_on_its_guide():
-    sketch = sketched(example_text("six-bar-press"))
+    sketch = sketch_of(example_text("six-bar-press"))
     reshaped = reshape(sketch, "H", (sketch.places["H"][0] + 0.1, 2.0), HERE)
     assert reshaped.places["H"] == pytest.approx((sketch.places["H"][0] + 0.1, 0.9), abs=1e-5)
     assert "guide" in reshaped.held
@@ -167,6 +167,6 @@ def test_drags_by_messages(ask):
 
 
 def test_what_does_not_close_is_refused_in_words():
-    sketch = sketched(example_text("three-crank-parallelogram"))
+    sketch = sketch_of(example_text("three-crank-parallelogram"))
     with pytest.raises(CentrodeError):
         reshape(sketch, "F", (5.0, 5.0), HERE)

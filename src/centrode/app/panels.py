@@ -177,7 +177,7 @@ def topic_sheet(document: Document, topic: Topic, options: object, samples: obje
 def _arguments(topic: Topic, description: Described, options: object, samples: object) -> dict[str, Any]:
     """Arguments of the computation of a topic, from what a message holds."""
     command = topic.command
-    given = dict(_given(command, options, description)) if command is not None else {}
+    given = dict(_given_options(command, options, description)) if command is not None else {}
     arguments = option_arguments(command, description, given) if command is not None else {}
     arguments = {**dict(topic.document.arguments), **arguments} if command is None else arguments
     if topic.panel is not None:
@@ -201,7 +201,7 @@ def _instants_key(command: Command) -> str:
     return ""
 
 
-def _given(command: Command, options: object, description: Described) -> Iterator[tuple[str, Any]]:
+def _given_options(command: Command, options: object, description: Described) -> Iterator[tuple[str, Any]]:
     """Options of a message that are options of the command, each of its kind."""
     table: Mapping[Any, Any] = options if isinstance(options, Mapping) else {}
     for option in command.options:

@@ -33,14 +33,14 @@ def written_quantity(sketch: Sketch, old: Any, value: float, kind: str, *, exact
     if unit is None and (not bare or (kind == "angle" and _displays_other_angles(sketch))):
         unit = _usual_unit(sketch, kind)
     if unit is None:
-        return value if exactly else rounded(value, _decimals(sketch, kind, "", 1.0))
+        return value if exactly else with_decimals(value, _decimals(sketch, kind, "", 1.0))
     try:
         factor = unit_factor(unit, kind)
     except InputError:
         unit, factor = ("rad", 1.0) if kind == "angle" else ("m", 1.0)
     number = value / factor
     if not exactly:
-        number = rounded(number, _decimals(sketch, kind, unit, factor))
+        number = with_decimals(number, _decimals(sketch, kind, unit, factor))
     return f"{spelled_value(number)} {unit}"
 
 
@@ -49,7 +49,7 @@ def field_text(value: float) -> str:
     return f"{value:.{FIELD_DIGITS}g}".replace(".", decimal_mark())
 
 
-def rounded(value: float, decimals: int) -> float:
+def with_decimals(value: float, decimals: int) -> float:
     """A number with so many decimals; no negative zero."""
     return round(value, decimals) + 0.0
 

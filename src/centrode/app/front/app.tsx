@@ -10,7 +10,7 @@ import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
 import { SelectionCard, duplicateSelected, removeSelected } from "./selection_card";
 import { Stage } from "./stage";
-import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved } from "./state";
+import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, refusal, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved } from "./state";
 import { TextPane } from "./text_pane";
 import { language, say } from "./words";
 
@@ -103,7 +103,7 @@ function Lost() {
 }
 
 function App() {
-  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" && <p>centrode</p>}</main>;
+  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" && <p class="refusal">{refusal || "centrode"}</p>}</main>;
   return (
     <div class={editing.value ? "bench live with-text" : "bench live"}>
       <TopBar />
