@@ -164,6 +164,28 @@ def test_duplicates_stand_beside():
     assert copies[0] in sketch.fixed
 
 
+@pytest.mark.parametrize(
+    ("name", "link"), [("crank-rocker", "AB"), ("six-bar-press", "DH"), ("pantograph", None)]
+)
+def test_copies_of_links_with_lengths_hang_on_a_point_of_the_frame(name, link):
+    """Also of links that have none: every point of the copy stands as far away as the first one."""
+    text = example_text(name)
+    before = Sketch(read_document(text, HERE))
+    chosen = (
+        [link]
+        if link
+        else [one for one, points in before.links.items() if not set(points) & set(before.fixed)]
+    )
+    patch = patch_of(text, {"do": "duplicate", "objects": chosen, "by": [0.3, -0.2]})
+    after = Sketch(patch.document)
+    originals = list(dict.fromkeys(point for one in chosen for point in before.links[one]))
+    copies = [one for one in patch.named if one in after.points]
+    assert len(copies) == len(originals) and set(copies) & set(after.fixed)
+    for old, new in zip(originals, copies, strict=True):
+        x, y = before.places[old]
+        assert after.places[new] == pytest.approx((x + 0.3, y - 0.2), abs=2e-4 * before.size)
+
+
 @pytest.mark.parametrize("name", ["crank-rocker", "six-bar-press", "slider-crank-offset", "watt-six-bar"])
 def test_a_length_that_is_typed_holds_the_others(name):
     text = example_text(name)

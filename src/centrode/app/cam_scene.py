@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from centrode.app.cam_segments import segment_rows
 from centrode.app.documents import Document
 from centrode.app.quantity_texts import field_text
 from centrode.app.sketch import display_units, list_of_tables
@@ -19,11 +20,6 @@ from centrode.model.follower_cam import PlateCam
 from centrode.model.units import number_and_unit
 
 SAMPLES = 361
-CURVES = (
-    "dwell", "uniform", "parabolic", "harmonic", "cycloidal", "3-4-5", "4-5-6-7", "trapezoid", "modified sine",
-    "modified trapezoid",
-)  # fmt: skip
-"""Curves of a segment that need nothing but its ends."""
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
@@ -51,11 +47,10 @@ def _cam(document: Document) -> dict[str, Any]:
         "base": None,
         "roller": None,
         "displacement": None,
-        "segments": [],
+        "segments": list(segment_rows(document)),
     }
     cam = document.cam
     if isinstance(cam, PlateCam):
-        found["segments"] = list(_segments(document))
         found["displacement"] = _displacement(cam)
     if cam is None:
         return found
@@ -99,28 +94,6 @@ def _displacement(cam: PlateCam) -> dict[str, Any]:
 
 def _finite(value: float) -> float | None:
     return float(f"{value:.7g}") if np.isfinite(value) else None
-
-
-def _segments(document: Document) -> Iterator[dict[str, Any]]:
-    """Segments with the angles at which they begin and end [rad], in the order of the text."""
-    cam = document.cam
-    assert isinstance(cam, PlateCam)
-    start, level = 0.0, 0.0
-    for k, segment in enumerate(cam.segments):
-        stop = start + segment.angle
-        end = level if segment.to is None else segment.to
-        kind = "dwell" if end == level else "rise" if end > level else "fall"
-        yield {
-            "path": f"segments.{k}",
-            "from": start,
-            "to": stop,
-            "kind": kind,
-            "law": segment.curve,
-            "start": level,
-            "lift": end,
-            "laws": list(CURVES),
-        }
-        start, level = stop, end
 
 
 def _dimensions(document: Document) -> Iterator[dict[str, Any]]:

@@ -56,12 +56,11 @@ def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) 
 
 
 def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector) -> None:
-    """Copies of links with lengths and angles: those of points of the frame are points of the frame."""
+    """Copies of links with lengths and angles: each part of them hangs on a point of the frame."""
     sketch = patch.sketch
     anchors = [point for point in points if point in sketch.fixed]
-    if not anchors:
-        what = _("in this description links have lengths and angles, and the copy would hang on nothing")
-        raise InputError("", what, _("choose a link with a point of the frame too"))
+    # a part that no point of the frame carries gets one: everything else hangs on it by lengths and angles
+    anchors += [part[0] for part in _parts(sketch, links, points) if not set(part) & set(anchors)]
     free = patch.free_names()
     new = {point: next(free) for point in points}
     patch.named += new.values()
@@ -73,6 +72,17 @@ def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str
         name = patch.named[-1]
         if sketch.angle(link) is None or sketch.tables["links"][link].get("angle") is None:
             patch.write((("links", name, "angle"), patch.angle(sketch.poses[link][1])))
+
+
+def _parts(sketch: Sketch, links: Sequence[str], points: Sequence[str]) -> list[list[str]]:
+    """Points that links join with each other, part by part."""
+    parts: list[list[str]] = [[point] for point in points]
+    for link in links:
+        joined = [part for part in parts if set(part) & set(sketch.links[link])]
+        parts = [part for part in parts if part not in joined] + [
+            [point for part in joined for point in part]
+        ]
+    return parts
 
 
 def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:

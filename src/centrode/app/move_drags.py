@@ -124,7 +124,7 @@ def move_refusal(sketch: Sketch, name: str) -> str:
     """Why a point cannot be dragged to move the mechanism; empty where it can."""
     if name in sketch.fixed:
         return _("a point of the frame does not move")
-    if sketch.document.prepared is None:
+    if sketch.document.position is None:
         return _("the mechanism cannot move yet")
     return ""
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from centrode.app.cam_segments import add_segment, delete_segment, set_curve
 from centrode.app.deletion import delete_objects
 from centrode.app.drawing_operations import add_guide, add_link, add_point
 from centrode.app.duplication import duplicate, mirror
-from centrode.app.number_fields import lock, move_point, set_number
+from centrode.app.number_fields import lock, move_point, set_number, set_starts
 from centrode.app.patches import Operation, Patch
 from centrode.app.renaming import join_points, rename
 from centrode.app.sketch import Sketch
@@ -22,6 +23,7 @@ OPERATIONS: Mapping[str, Callable[[Patch, Operation], None]] = {
     "add_guide": add_guide,
     "set_row": set_row,
     "set": set_number,
+    "set_starts": set_starts,
     "delete": delete_objects,
     "duplicate": duplicate,
     "mirror": mirror,
@@ -29,6 +31,9 @@ OPERATIONS: Mapping[str, Callable[[Patch, Operation], None]] = {
     "rename": rename,
     "lock": lock,
     "join": join_points,
+    "add_segment": add_segment,
+    "delete_segment": delete_segment,
+    "set_curve": set_curve,
 }
 """Name of an operation in a message -> what it does to the text."""
 NEEDS_MECHANISM = ("set", "rename", "move_point", "mirror", "join")

@@ -115,7 +115,8 @@ def topics_of(document: Document) -> dict[str, bool | str]:
     for topic in shown_topics():
         if (topic.subject == "cam") != document.is_cam:
             continue
-        if description is None or (not document.is_cam and document.prepared is None):
+        takes_free = topic.panel is not None and topic.panel.free and document.free is not None
+        if description is None or not (document.is_cam or document.prepared or takes_free):
             found[topic.name] = _("the mechanism cannot move yet")
         else:
             found[topic.name] = _concern(topic, description)
@@ -162,7 +163,7 @@ def panel_of(document: Document, name: object, options: object, samples: object)
 def topic_sheet(document: Document, topic: Topic, options: object, samples: object) -> tuple[Any, Described]:
     """The sheet of a topic of a description, and this; raises CentrodeError where there is none."""
     description: Described = document.cam if document.cam is not None else document.require_mechanism()
-    if isinstance(description, Mechanism):
+    if isinstance(description, Mechanism) and document.free is None:
         document.require_prepared()
     reason = topics_of(document).get(topic.name, _(CONCERNS_NOTHING))
     if reason is not True:

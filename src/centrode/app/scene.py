@@ -11,6 +11,7 @@ from centrode.app.move_drags import move_refusal
 from centrode.app.sketch import (
     Sketch,
     display_units,
+    drive_name,
     guide_line,
     guide_name,
     list_of_tables,
@@ -115,11 +116,9 @@ def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
 
 
 def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
-    prepared = sketch.document.prepared
+    prepared = sketch.document.position
     for drive in sketch.drives:
-        name = next((drive[key] for key in ("link", "guide") if isinstance(drive.get(key), str)), "")
-        points = drive.get("distance")
-        name = name or "-".join(points or ())
+        name, points = drive_name(drive), drive.get("distance")
         coordinate = coordinate_of_drive(drive, sketch.space)
         start = None if prepared is None else prepared.assembled.positions.drives.get(name)
         yield {

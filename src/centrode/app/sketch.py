@@ -108,7 +108,7 @@ class Sketch:
 
     @cached_property
     def _standing(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
-        prepared = self.document.prepared
+        prepared = self.document.position
         if prepared is not None:
             at = prepared.assembled.positions
             points = {name: tuple(map(float, place)) for name, place in at.points.items()}
@@ -254,6 +254,12 @@ def direction_angle(value: object) -> float | None:
         place = coordinates(value)
         return None if place is None else math.atan2(place[1], place[0])
     return number(value, "angle")
+
+
+def drive_name(drive: Mapping[str, Any]) -> str:
+    """How a drive is called: as its link, its guide, or both points of its distance."""
+    named = next((drive[key] for key in ("link", "guide") if isinstance(drive.get(key), str)), "")
+    return named or "-".join(entries_of(drive.get("distance")))
 
 
 def load_name(number_of_load: int) -> str:

@@ -215,15 +215,17 @@ def international(text: str) -> str:
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """A number and what stands behind it, both as they are written; None where a text does not begin with a number."""
+    """A number and its unit as they are written, the unit empty where there is none; None for any other text."""
     found = _NUMBER.fullmatch(text.strip())
-    return None if found is None else (found.group(1), found.group(2))
+    if found is None or not (found.group(2) == "" or _UNIT.fullmatch(found.group(2))):
+        return None
+    return found.group(1), found.group(2)
 
 
 def _split_unit(text: str, kind: str) -> tuple[float, str]:
     """Number and unit of a text: the shortest formula from the left with a unit, or nothing, behind."""
     simple = number_and_unit(text)
-    if simple and (not simple[1] or _UNIT.fullmatch(simple[1])):
+    if simple:
         return float(simple[0]), simple[1]
     words = text.split()
     for count in range(1, len(words) + 1):

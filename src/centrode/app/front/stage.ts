@@ -603,6 +603,7 @@ export class Stage {
     } else {
       batch(() => {
         this.live = null;
+        if (drag.how === "move") place.value = motion.value?.start ?? 0; // what was dropped is where the motion begins
         if (answer.text !== undefined) state.accept(answer);
       });
     }
@@ -769,8 +770,9 @@ class Drag {
   private flying = false;
   private waiting: Place | null = null;
   private over = false;
+  private drives: Record<string, number> | null = null; // of several drives: where they stand in this drag
 
-  constructor(private readonly point: string, private readonly how: "edit" | "move", private readonly shown: (frame: Frame) => void) {}
+  constructor(private readonly point: string, readonly how: "edit" | "move", private readonly shown: (frame: Frame) => void) {}
 
   to(goal: Place): void {
     this.waiting = goal;
@@ -783,7 +785,7 @@ class Drag {
 
   private request(to: Place): Record<string, unknown> & { do: string } {
     const now = motion.value;
-    return { do: "drag", digest: digest.value, mode: this.how, point: this.point, to, ...(this.how === "move" && now ? { drive: now.driveAt(place.value) } : {}) };
+    return { do: "drag", digest: digest.value, mode: this.how, point: this.point, to, ...(this.how === "move" && now ? { drive: now.driveAt(place.value) } : {}), ...(this.drives ? { drives: this.drives } : {}) };
   }
 
   private async pump(): Promise<void> {
@@ -793,7 +795,10 @@ class Drag {
       this.waiting = null;
       const answer = await ask(this.request(to), "drag");
       if (this.over) break;
-      if (isFrame(answer)) this.shown(answer);
+      if (isFrame(answer)) {
+        this.drives = answer.header.drives ?? null;
+        this.shown(answer);
+      }
       else if (answer !== SUPERSEDED && answer.error) state.refused(answer.error);
     }
     this.flying = false;
