@@ -240,8 +240,7 @@ class Workbench:
         values = initial_values(prepared)
         given, time = message.get("drives"), message.get("drive")
         if isinstance(given, Mapping):
-            known = {name: given.get(name) for name in values}
-            values |= {name: float(x) for name, x in known.items() if _is_finite(x)}
+            values |= {name: float(given[name]) for name in values if _is_finite(given.get(name))}
         elif document.prepared is not None and _is_finite(time):
             moved = prepared.kinematics.path.drive_values(ARRAYS, np.float64(time))
             values |= {name: float(value) for name, value in moved.items()}

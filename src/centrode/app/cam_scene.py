@@ -30,10 +30,7 @@ def cam_scene(document: Document) -> dict[str, Any]:
         "kind": "cam",
         "display": display_units(document.tables),
         "size": [[-1.0, -1.0], [1.0, 1.0]],
-        **{
-            key: []
-            for key in ("points", "links", "guides", "drives", "wheels", "gears", "cylinders", "loads")
-        },
+        **{key: [] for key in ("points", "links", "guides", "drives", "wheels", "cylinders", "loads")},
         "rows": {},
         "dimensions": list(_dimensions(document)),
         "cam": _cam(document),

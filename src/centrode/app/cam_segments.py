@@ -16,6 +16,7 @@ from centrode.laws import DWELL, FORMULA
 from centrode.locale import _
 from centrode.model.cam_cycle import LENGTHS, with_angles_of_segments
 from centrode.model.reading import Problems
+from centrode.model.settings import Display
 from centrode.model.units import number_and_unit
 from centrode.render import plain_text
 from centrode.views.followers import curve_name
@@ -46,7 +47,7 @@ def segment_rows(document: Document) -> Iterator[dict[str, Any]]:
     except Problems:
         tables = document.tables
     kind, start, level = lift_kind(tables), 0.0, 0.0
-    curves = {curve: plain_text(curve_name(curve), None) for curve in CURVES}
+    curves = {curve: plain_text(curve_name(curve), Display()) for curve in CURVES}
     for k, segment in enumerate(list_of_tables(tables, ROOM)):
         stop = start + (number(segment.get("angle"), "angle") or 0.0)
         end = number(segment.get("to"), kind)
@@ -61,7 +62,7 @@ def segment_rows(document: Document) -> Iterator[dict[str, Any]]:
             "start": level,
             "lift": end,
             "laws": list(CURVES),
-            "names": {**curves, curve: plain_text(curve_name(curve), None)},
+            "names": {**curves, curve: plain_text(curve_name(curve), Display())},
         }
         start, level = stop, end
 

@@ -8,18 +8,19 @@ from typing import Any
 
 from centrode.app.edit_drags import follows_from_points, local_place
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import Vector, guide_name
+from centrode.app.sketch import Vector, guide_name, on_unit_sphere
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import FRAME, two_points, value_text
+from centrode.model.values import cross
 
 QUARTER = math.pi / 2
 
 
 def add_link(patch: Patch, operation: Operation) -> None:
     """Draw a link from one place or point to another."""
-    sketch = patch.plane_sketch()
+    sketch = patch.drawn_sketch()
     ends = [patch.place_of(operation, "at"), patch.place_of(operation, "to")]
     names: list[str | None] = []
     for key in ("from_point", "to_point"):
@@ -37,7 +38,7 @@ def add_link(patch: Patch, operation: Operation) -> None:
             raise InputError("", what.format(first=names[0], second=names[1], link=link), "")
     if math.dist(*ends) <= 1e-6 * sketch.size:
         raise InputError("", _("the link is too short"), _("draw it longer"))
-    if patch.draws_points():
+    if patch.sketch.draws_points:
         first, second = (name or patch.new_point(end) for name, end in zip(names, ends, strict=True))
         _add_link_of_points(patch, first, second)
         return
@@ -74,7 +75,7 @@ def _add_measured_link(patch: Patch, names: list[str | None], ends: list[Vector]
 
 def add_point(patch: Patch, operation: Operation) -> None:
     """Give a link a further point."""
-    sketch = patch.plane_sketch()
+    sketch = patch.drawn_sketch()
     link, place = operation.get("link"), patch.place_of(operation, "at")
     if not isinstance(link, str) or link not in sketch.links:
         raise InputError("", _("unknown link {name}").format(name=value_text(link)))
@@ -114,37 +115,59 @@ def add_point(patch: Patch, operation: Operation) -> None:
 
 
 def add_guide(patch: Patch, operation: Operation) -> None:
-    """Draw a line in which a point slides."""
-    patch.plane_sketch()
+    """Draw a line in which a point slides; on the sphere a great circle."""
+    sketch = patch.drawn_sketch()
     place = patch.place_of(operation, "at")
     direction = operation.get("direction", 0.0)
-    if isinstance(direction, list):
+    pole: Vector | None = None
+    if sketch.on_sphere:
+        pole = _pole(place, patch.place_of(operation, "to"))
+    elif isinstance(direction, list):
         x, y = patch.place_of(operation, "direction")
         direction = math.atan2(y, x)
     if isinstance(direction, bool) or not isinstance(direction, int | float) or not math.isfinite(direction):
         raise InputError("", _("a direction is an angle"))
     if operation.get("point") is None:
-        if not patch.draws_points():
+        if not patch.sketch.draws_points:
             raise InputError("", _("a guide needs a point that slides in it"), _("begin it at a joint"))
         name = patch.new_point(place)
     else:
         name = patch.point_of(operation)
-    guide_point(patch, name, float(direction))
+    guide_point(patch, name, float(direction), pole)
 
 
-def guide_point(patch: Patch, point: str, direction: float) -> None:
-    """Let a point slide in a straight line through it, at an angle [rad]."""
+def _pole(one: Vector, other: Vector) -> Vector:
+    """Pole of the great circle through two places."""
+    (x, y, z), (u, v, w) = one, other
+    pole = on_unit_sphere(cross((x, y, z), (u, v, w)))
+    if pole is None:
+        raise InputError("", _("the line is too short"), _("draw it longer"))
+    return pole
+
+
+def guide_point(patch: Patch, point: str, direction: float, pole: Vector | None = None) -> None:
+    """Let a point slide in a straight line through it at an angle [rad], or in the circle about a pole."""
     sketch = patch.sketch
     if point in sketch.fixed:
         raise InputError(point, _("a point of the frame does not slide: switch Ground off first"))
     if sketch.guides_of(point):
         raise InputError(point, _("this point slides in a guide already"))
     entries: dict[str, Any] = {"point": point, "on": FRAME}
+    if sketch.on_sphere:
+        # the circle about a pole goes through the point: to the east where nobody says
+        place = sketch.places.get(point, (1.0, 0.0, 0.0))
+        entries["pole"] = patch.pair(pole or _pole(place, (-place[1], place[0], 0.0)))
+        _add_guide_entry(patch, entries)
+        return
     if not (sketch.is_short_form and point in sketch.tables["points"]):
         if point not in sketch.places:
             raise InputError(point, _("its place is not known: correct the description first"))
         entries["through"] = patch.pair(sketch.places[point])
     entries["direction"] = written_direction(patch, direction)
+    _add_guide_entry(patch, entries)
+
+
+def _add_guide_entry(patch: Patch, entries: Mapping[str, Any]) -> None:
     patch.add_entry("guides", entries)
     patch.named.append(guide_name(patch.sketch, len(patch.sketch.guides) - 1))
 

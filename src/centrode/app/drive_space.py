@@ -163,7 +163,8 @@ def place_in_drive_space(
 def _damped_step(matrix: Array, gradient: Array, damping: float) -> Array:
     """The step to the least value of a quadratic form that is made convex."""
     values, vectors = np.linalg.eigh(matrix)
-    return -vectors @ ((vectors.T @ gradient) / (np.abs(values) + damping))
+    step: Array = -vectors @ ((vectors.T @ gradient) / (np.abs(values) + damping))
+    return step
 
 
 def starts_of(sketch: Sketch, position: DrivenPosition) -> dict[str, float]:

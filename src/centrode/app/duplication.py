@@ -25,7 +25,7 @@ def duplicate(patch: Patch, operation: Operation) -> None:
     for point in points:
         if point not in sketch.places:
             raise InputError(point, _("its place is not known: correct the description first"))
-    if not patch.draws_points():
+    if not patch.sketch.draws_points:
         _duplicate_measured(patch, links, points, by)
         return
     new = {

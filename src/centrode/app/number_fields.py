@@ -26,10 +26,11 @@ from centrode.model.description import coordinate_of_drive
 from centrode.model.files import with_values
 from centrode.model.reading import Place, value_text
 from centrode.model.units import number_and_unit
+from centrode.model.values import tangent_towards, unit_vector
 
 UNCHANGED = 1e-9
 """Starts [rad or m] that differ by less are the same."""
-AXES = {"x": 0, "y": 1}
+AXES = {"x": 0, "y": 1, "longitude": 0, "latitude": 1}
 KINDS = {"length": "length", "angle": "angle", "mass": "mass", "inertia": "inertia", "radius": "length"}
 """Key of a link -> kind of quantity."""
 
@@ -54,9 +55,9 @@ def set_number(patch: Patch, operation: Operation) -> None:
     )
     if place[0] == "points" and len(place) == 3:
         point = str(place[1])
-        to = [*sketch.places[point]]
+        to = [*sketch.numbers_of(sketch.places[point])]
         to[int(place[2])] = number
-        drop_point(patch, point, tuple(to))
+        drop_point(patch, point, unit_vector((to[0], to[1])) if sketch.on_sphere else tuple(to))
         return
     if geometric and mechanism is not None and sketch.document.prepared is not None:
         _follow(patch, sketch, path, place, number, value, kind)
@@ -75,6 +76,9 @@ def _stretch(patch: Patch, sketch: Sketch, link: str, length: float) -> None:
         len(sketch.owners(second)) > 1 and len(sketch.owners(first)) < 2 and first not in sketch.fixed
     ):
         first, second = second, first
+    if sketch.on_sphere:
+        drop_point(patch, second, along_arc(sketch.places[first], sketch.places[second], length))
+        return
     (x, y), (u, v) = sketch.places[first][:2], sketch.places[second][:2]
     share = length / math.hypot(u - x, v - y)
     drop_point(patch, second, (x + share * (u - x), y + share * (v - y)))
@@ -90,6 +94,15 @@ def _follow(
     if old is not None or place[0] == "drives":
         own = ((place, typed_quantity(sketch, old, value, number, kind)),)
     patch.write(*own, *written_position(sketch, prepared, {place}))
+
+
+def along_arc(start: Vector, towards: Vector, way: float) -> Vector:
+    """The place on the sphere at a distance [rad] from another one, on the arc to a third."""
+    (x, y, z), (u, v, w) = start, towards
+    tangent = tangent_towards((x, y, z), (u, v, w))
+    return tuple(
+        math.cos(way) * one + math.sin(way) * other for one, other in zip(start, tangent, strict=True)
+    )
 
 
 def set_starts(patch: Patch, operation: Operation) -> None:
@@ -135,7 +148,7 @@ def _written_starts(sketch: Sketch, starts: Mapping[str, float]) -> Iterator[Ass
 
 def move_point(patch: Patch, operation: Operation) -> None:
     """Put a joint at another place."""
-    patch.plane_sketch()
+    patch.drawn_sketch()
     drop_point(patch, patch.point_of(operation), patch.place_of(operation, "to"))
 
 
@@ -170,12 +183,12 @@ def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
         case "points":
             name, _dot, axis = rest.rpartition(".")
             if axis in AXES and name in sketch.tables.get("points", {}):
-                return ("points", name, AXES[axis]), "length"
+                return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
         case "frame":
             name, _dot, axis = rest.removeprefix("points.").rpartition(".")
             if axis in AXES and name in sketch.fixed:
                 if sketch.is_short_form and name in sketch.tables["points"]:
-                    return ("points", name, AXES[axis]), "length"
+                    return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
                 return ("frame", "points", name, AXES[axis]), "length"
         case "links":
             place = _place_in_link(sketch, rest)
@@ -205,7 +218,8 @@ def _place_in_link(sketch: Sketch, rest: str) -> tuple[Place, str | None] | None
             continue
         key = rest.removeprefix(f"{name}.")
         if key in KINDS:
-            return ("links", name, key), KINDS[key]
+            arcs = sketch.on_sphere and key == "length"
+            return ("links", name, key), "angle" if arcs else KINDS[key]
         point, _dot, axis = key.removeprefix("points.").rpartition(".")
         if key.startswith("points.") and axis in AXES and point in sketch.links[name]:
             return ("links", name, "points", point, AXES[axis]), "length"

@@ -13,7 +13,7 @@ from centrode.app.number_fields import lock, move_point, set_number, set_starts
 from centrode.app.patches import Operation, Patch
 from centrode.app.renaming import join_points, rename
 from centrode.app.sketch import Sketch
-from centrode.app.state_rows import set_row
+from centrode.app.state_rows import ensure_references, set_row
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -62,6 +62,7 @@ def apply_operation(patch: Patch, operation: Operation) -> None:
         raise InputError("", what, _("correct it in the text first"))
     try:
         change(patch, operation)
+        ensure_references(patch)
         if before.prepared is not None and patch.document.prepared is None:
             patch.keep_places(Sketch(before))
         after = patch.document

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from centrode.app.documents import Document, read_document
 from centrode.app.edit_drags import Assignment, value_at_place
 from centrode.app.quantity_texts import written_quantity
-from centrode.app.sketch import Sketch, Vector, with_mark
+from centrode.app.sketch import Sketch, Vector, on_unit_sphere, with_mark
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
 from centrode.locale import _
@@ -106,6 +106,16 @@ class Patch:
             raise InputError("", _("on the sphere this is changed in the text"))
         return sketch
 
+    def drawn_sketch(self) -> Sketch:
+        """What is drawn; InputError on the sphere where links have arcs in place of points with coordinates."""
+        sketch = self.sketch
+        if sketch.on_sphere and not sketch.draws_points:
+            what = _(
+                "on the sphere drawings have coordinates of points, and this description has arcs and angles"
+            )
+            raise InputError("", what, _("change it in the text"))
+        return sketch
+
     def point_of(self, operation: Operation, key: str = "point") -> str:
         """The point that an operation names; InputError where there is none of this name."""
         name = operation.get(key)
@@ -121,14 +131,15 @@ class Patch:
             if isinstance(value, list)
             else []
         )
-        if (
-            len(numbers) != 2
-            or not isinstance(value, list)
-            or len(value) != 2
-            or not all(map(math.isfinite, numbers))
-        ):
-            raise InputError("", _("a place is two numbers"))
-        return tuple(numbers)
+        axes = 3 if self.sketch.on_sphere else 2
+        given = len(value) if isinstance(value, list) else 0
+        if not (len(numbers) == given == axes and all(map(math.isfinite, numbers))):
+            what = _("a place is two numbers") if axes == 2 else _("a place on the sphere is three numbers")
+            raise InputError("", what)
+        place = tuple(numbers) if axes == 2 else on_unit_sphere(tuple(numbers))
+        if place is None:
+            raise InputError("", _("a place on the sphere is not its centre"))
+        return place
 
     def objects_of(self, operation: Operation) -> list[str]:
         """The objects that an operation names, each once."""
@@ -156,16 +167,13 @@ class Patch:
 
     def pair(self, place: Vector) -> list[Any]:
         """Coordinates of a place as the file writes them."""
-        return [self.length(x) for x in place[:2]]
+        sketch = self.sketch
+        kind = "angle" if sketch.on_sphere else "length"
+        return [written_quantity(sketch, None, x, kind) for x in sketch.numbers_of(place)]
 
     def angle(self, value: float, old: Any = None) -> Any:
         """An angle [rad] as the file writes it."""
         return written_quantity(self.sketch, old, value, "angle")
-
-    def draws_points(self) -> bool:
-        """Whether what is drawn gets coordinates in the table of points: in a new text, and where others have them."""
-        sketch = self.sketch
-        return sketch.is_short_form or not (sketch.links or sketch.fixed)
 
     def new_point(self, place: Vector, name: str | None = None) -> str:
         """A point with coordinates in the table of points."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from centrode.app.dimensions import dimension_rows
@@ -10,19 +11,27 @@ from centrode.app.edit_drags import edit_refusal
 from centrode.app.move_drags import move_refusal
 from centrode.app.sketch import (
     Sketch,
+    coordinates,
+    direction_angle,
     display_units,
     drive_name,
+    guide_circle,
     guide_line,
     guide_name,
     list_of_tables,
     load_name,
     number,
+    on_unit_sphere,
 )
 from centrode.app.state_rows import rows_of
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
+from centrode.model.links import Gear
+from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME
 
+COAXIAL = 1e-9
+"""Shafts nearer than this share of the extent are one: no pitch circles tell their ratio."""
 MARGIN = 0.1
 """Room around a drawing, as a part of its extent."""
 
@@ -32,6 +41,7 @@ def scene_of(sketch: Sketch) -> dict[str, Any]:
     return {
         "title": _text(sketch.tables.get("title")),
         "kind": "sphere" if sketch.on_sphere else "plane",
+        "draws": sketch.draws_points or not sketch.on_sphere,
         "display": display_units(sketch.tables),
         "size": _box(sketch),
         "points": [_point(sketch, name) for name in sketch.points],
@@ -39,10 +49,6 @@ def scene_of(sketch: Sketch) -> dict[str, Any]:
         "guides": list(_guides(sketch)),
         "drives": list(_drives(sketch)),
         "wheels": list(_wheels(sketch)),
-        "gears": [
-            {"links": list(gear.get("links", ())), "carrier": gear.get("carrier", FRAME)}
-            for gear in list_of_tables(sketch.tables, "gears")
-        ],
         "cylinders": [list(drive["distance"]) for drive in sketch.drives if drive.get("distance")],
         "loads": list(_loads(sketch)),
         "rows": rows_of(sketch),
@@ -109,10 +115,17 @@ def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
             "on": guide.get("on", FRAME),
             "through": None if through is None else list(through),
             "direction": direction,
+            "circle": _circle(sketch, k),
             "link": guide.get("link"),
             "slider": not guide.get("link"),
             "drive": bool(sketch.drives_of(str(guide.get("name", point)))),
         }
+
+
+def _circle(sketch: Sketch, number_of_guide: int) -> dict[str, Any] | None:
+    """The circle of a guide on the sphere."""
+    circle = guide_circle(sketch, number_of_guide) if sketch.on_sphere else None
+    return None if circle is None else {"pole": list(circle[0]), "radius": circle[1]}
 
 
 def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
@@ -137,15 +150,68 @@ def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
 
 
 def _wheels(sketch: Sketch) -> Iterator[dict[str, Any]]:
+    """Rolling wheels with what they roll on, and pitch circles of meshing ones, which touch where they mesh."""
     for wheel in list_of_tables(sketch.tables, "rolling"):
         along = wheel.get("along")
         yield {
             "link": wheel.get("link"),
             "centre": wheel.get("centre"),
             "radius": number(wheel.get("radius"), "length"),
-            "on": wheel.get("on", FRAME),
-            "track": number(along.get("radius"), "length") if isinstance(along, dict) else None,
+            "pitch": False,
+            "track": _track(sketch, wheel, along) if isinstance(along, Mapping) else None,
         }
+    mechanism = sketch.document.mechanism
+    for gear in () if mechanism is None else mechanism.gears:
+        yield from _pitch_circles(sketch, gear)
+
+
+def _track(sketch: Sketch, wheel: Mapping[str, Any], along: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The circle or the line that a wheel rolls on, where it lies in the initial position."""
+    on = str(wheel.get("on", FRAME))
+    pose = ((0.0, 0.0), 0.0) if on == FRAME else sketch.poses.get(on)
+    given = along.get("centre", along.get("through"))
+    local = coordinates(given)
+    place = sketch.places.get(given) if isinstance(given, str) else None
+    if pose is None or (local is None and place is None):
+        return None
+    (x, y), angle = pose[0][:2], pose[1]
+    if place is None and local is not None:
+        u, v = rotate_vector(local, angle)
+        place = (x + u, y + v)
+    direction = direction_angle(along.get("direction"))
+    return {
+        "on": on,
+        "at": list(place or ()),
+        "radius": number(along.get("radius"), "length"),
+        "direction": None if direction is None else direction + angle,
+    }
+
+
+def _pitch_circles(sketch: Sketch, gear: Gear) -> Iterator[dict[str, Any]]:
+    """Each wheel of a gear by the point in which it turns on the carrier; none where both turn about one axis."""
+    held = sketch.fixed if gear.carrier == FRAME else sketch.links.get(gear.carrier, ())
+    of_links = [sketch.fixed if link == FRAME else sketch.links.get(link, ()) for link in gear.links]
+    shafts = [next((point for point in points if point in held), "") for points in of_links]
+    places = [sketch.places[shaft] for shaft in shafts if shaft in sketch.places]
+    if len(places) < len(shafts):
+        return
+    distance = sketch.distance(places[0], places[1])
+    if distance < COAXIAL * sketch.size:
+        return
+    if sketch.on_sphere:
+        # the wheels touch along the axis about which they roll
+        contact = on_unit_sphere(tuple(x - gear.ratio * y for x, y in zip(*places, strict=True)))
+        if contact is None:
+            return
+        radii = [sketch.distance(place, contact) for place in places]
+        if radii[1] > math.pi / 2:
+            # an axis pierces the sphere twice: they mesh at the place on the side of the second wheel
+            radii = [math.pi - radius for radius in radii]
+    else:
+        second = distance / abs(gear.ratio - 1.0)
+        radii = [abs(gear.ratio) * second, second]
+    for link, shaft, radius in zip(gear.links, shafts, radii, strict=True):
+        yield {"link": link, "centre": shaft, "radius": radius, "pitch": True, "track": None}
 
 
 def _loads(sketch: Sketch) -> Iterator[dict[str, Any]]:

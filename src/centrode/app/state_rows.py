@@ -37,7 +37,8 @@ def _row(on: bool, why: str = "", **more: Any) -> dict[str, Any]:
 
 
 def _sphere_words(sketch: Sketch) -> str:
-    return _("on the sphere this is changed in the text") if sketch.on_sphere else ""
+    measured = sketch.on_sphere and not sketch.is_short_form
+    return _("on the sphere this is changed in the text") if measured else ""
 
 
 def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
@@ -280,6 +281,26 @@ def _ground_pivot(patch: Patch, link: str) -> None:
     set_ground(patch, loose[0], True)
 
 
+def ensure_references(patch: Patch) -> None:
+    """On the sphere the angle of a drive is measured from an arc to a further point of the frame: where a drawing has
+    none although nothing hangs loose, a pole becomes one.
+    """
+    sketch = patch.sketch
+    if not (sketch.on_sphere and sketch.is_short_form) or sketch.loose_points():
+        return
+    for drive in sketch.drives:
+        link = drive.get("link")
+        if drive.get("relative_to", FRAME) != FRAME or link not in sketch.links:
+            continue
+        first = sketch.places.get(sketch.links[link][0])
+        others = [sketch.places[point] for point in sketch.fixed if point in sketch.places]
+        if first is None or any(1e-6 < sketch.distance(first, other) < math.pi - 1e-6 for other in others):
+            continue
+        pole = (0.0, 0.0, 1.0) if abs(first[2]) < 0.9 else (1.0, 0.0, 0.0)
+        set_ground(patch, patch.new_point(pole), True)
+        return
+
+
 def _set_mass(patch: Patch, link: str, on: bool, value: Any) -> None:
     sketch = patch.sketch
     table = sketch.tables["links"][link]
@@ -295,7 +316,7 @@ def _set_mass(patch: Patch, link: str, on: bool, value: Any) -> None:
         return
     entries: list[Assignment] = [(place, value if isinstance(value, str) and not is_number(value) else mass)]
     if len(sketch.links[link]) == 2 and not isinstance(table.get("points"), Mapping):
-        entries.append((("links", link, "shape"), "rod"))
+        entries.append((("links", link, "shape"), "arc" if sketch.on_sphere else "rod"))
     patch.write(*entries)
 
 
@@ -305,10 +326,12 @@ def _set_load(patch: Patch, point: str, on: bool, value: Any) -> None:
     if not on:
         patch.remove(*(("loads", k) for k in present))
         return
-    vector: list[Any] = [0, -FORCE]
+    axes = 3 if sketch.on_sphere else 2
+    vector: list[Any] = [*([0] * (axes - 1)), -FORCE]
     if value is not None:
-        if not isinstance(value, list) or len(value) != 2:
-            raise InputError(point, _("a force is two numbers"))
+        if not isinstance(value, list) or len(value) != axes:
+            what = _("a force is two numbers") if axes == 2 else _("a force on the sphere is three numbers")
+            raise InputError(point, what)
         vector = [read_field(sketch, x, "force") for x in value]
     forces = [k for k in present if list_of_tables(sketch.tables, "loads")[k].get("kind") == "force"]
     if forces:

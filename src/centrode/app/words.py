@@ -38,7 +38,9 @@ WORDS: Mapping[str, str] = {
     ),
     "mode_edit_hint": mark("Drag a joint to change the lengths of its links."),
     "mode_move_hint": mark("Drag a joint to move the mechanism."),
-    "not_on_sphere": mark("Spherical mechanisms are drawn in the text; here they can be moved."),
+    "not_on_sphere": mark(
+        "In this description links on the sphere have arcs and angles: change them in the text; here they can be moved."
+    ),
     "fit": mark("Show everything"),
     "zoom_in": mark("Zoom in"),
     "zoom_out": mark("Zoom out"),
@@ -51,6 +53,10 @@ WORDS: Mapping[str, str] = {
         "Drag here to draw the first link. Later switch Drive on at the link that drives, and "
         "Ground at joints that are at rest."
     ),
+    "empty_sphere": mark(
+        "Drag here to draw the first link on the sphere. In Move a drag beside the linkage turns the globe."
+    ),
+    "draw_on_sphere": mark("Draw on the sphere"),
     "held_point": mark("{name} cannot be dragged here."),
     "line_begun": mark(
         "The line begins here. Move with the arrow keys or go to a joint with Tab, then press Enter."

@@ -305,6 +305,7 @@ export async function follow(): Promise<boolean> {
 // --- beginning ---------------------------------------------------------------------------------------------------------
 const LANGUAGE = "centrode.language";
 export const BLANK = "[frame.points]\n\n[links]\n";
+export const SPHERE = `space = "sphere"\ndisplay = { angle = "deg" }\n\n${BLANK}`;
 let begun = false;
 
 async function greet(): Promise<void> {
