@@ -244,6 +244,62 @@ def test_drawing_by_keyboard(running: Any, server: Served) -> None:
         assert one.messages == []
 
 
+def test_what_else_a_hand_does_is_done_by_keyboard(running: Any, server: Served) -> None:
+    """A point on a link, a guide at it, several at once, the view, the drive's place, a photo's scale, the windows."""
+    with bench(running, server.address) as one:
+        press = one.page.keyboard.press
+        one.template("crank-rocker")
+        one.motion()
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        one.gesture(lambda: press("Enter"))
+        assert one.names("point") == ["O", "D", "A", "B", "C"]
+        one.page.focus('[data-kind="link"][data-name="OA"]')
+        press(" ")
+        one.page.focus('[data-kind="link"][data-name="DB"]')
+        press("Shift+ ")
+        assert one.page.inner_text(".selection h2").startswith("2 ")
+        one.gesture(lambda: press("Control+d"))
+        assert len(one.names("link")) == 5
+        one.gesture(lambda: press("Control+z"))
+        one.motion()
+        press("m")
+        one.page.focus('[data-kind="point"][data-name="A"]')
+        before = one.page.input_value('[data-do="seek"]')
+        press("ArrowUp")
+        one.until(lambda: one.page.input_value('[data-do="seek"]') != before)
+        one.settle()
+        x, y = one.spot("O")
+        one.page.focus(".stage-holder .drawing")
+        press("Control+ArrowRight")
+        frames(one.page)
+        assert one.spot("O") == pytest.approx((x - 60, y), abs=0.2)
+        one.page.click('[data-do="photo"]')
+        one.page.locator("dialog input[type=file]").set_input_files(
+            {"name": "grey.png", "mimeType": "image/png", "buffer": base64.b64decode(GREY)}
+        )
+        one.wait("document.querySelector('.photo').getAttribute('display') === 'inline'")
+        wide = float(one.page.get_attribute(".photo", "width"))
+        one.page.locator("dialog .buttons button", has_text="scale").focus()
+        press("Enter")
+        one.page.focus(".stage-holder .drawing")
+        for key in ("ArrowRight", "Enter", "ArrowRight", "ArrowRight", "Enter"):
+            press(key)
+        one.page.wait_for_selector("#photo-length")
+        drawn = float(one.page.input_value("#photo-length"))
+        one.page.fill("#photo-length", str(3 * drawn))
+        one.page.press("#photo-length", "Enter")
+        one.until(lambda: float(one.page.get_attribute(".photo", "width")) > 2 * wide)
+        one.page.focus('[role="tab"][aria-selected="true"]')
+        press("ArrowRight")
+        assert one.page.get_attribute("#tab-motion", "aria-selected") == "false"
+        one.page.focus(".stage-holder .drawing")
+        press("?")
+        one.page.wait_for_selector("dialog.keys")
+        press("Escape")
+        one.wait("document.querySelector('dialog') === null")
+        assert one.messages == []
+
+
 def test_undo_brings_the_same_bytes_back(running: Any, server: Served) -> None:
     """A hundred changes, undone and done again, letter for letter."""
     with bench(running, server.address) as one:

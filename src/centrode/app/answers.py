@@ -204,6 +204,8 @@ class Workbench:
         document, point, to = self.document(message), message.get("point"), _place_of(message.get("to"))
         if not isinstance(point, str):
             raise InputError("", _("the message names no point"))
+        if len(to) != (3 if Sketch(document).on_sphere else 2):
+            raise InputError("", _("a place is two numbers, on the sphere three"))
         if message.get("mode") == "move" and has_free_place(document):
             return self._drives_answer(message, document, point, to)
         if message.get("mode") == "move":
@@ -331,7 +333,7 @@ def _place_of(value: object) -> tuple[float, ...]:
         numbers = [float(one) for one in value if isinstance(one, int | float) and not isinstance(one, bool)]
         if len(numbers) == len(value) and all(math.isfinite(one) and abs(one) < 1e9 for one in numbers):
             return tuple(numbers)
-    raise InputError("", _("a place is two numbers"))
+    raise InputError("", _("a place is two numbers, on the sphere three"))
 
 
 def _is_finite(value: object) -> bool:

@@ -747,6 +747,18 @@ export class Stage {
     }
   }
 
+  // A known length over the photo, from one place of the cross to another.
+  private measureTo(at: Place): void {
+    const { line } = this;
+    if (!line) {
+      this.line = { from: at, to: at, target: null, end: null, guide: true };
+      return;
+    }
+    this.line = null;
+    this.sketch();
+    if (size(minus(at, line.from)) > 0) scalePhoto.value?.(line.from, at);
+  }
+
   // The globe turns until a place lies well in front.
   private follow3(place: Place): void {
     const flat = this.globe.flat(place), off = minus(flat, this.globe.centre);
@@ -756,9 +768,14 @@ export class Stage {
   }
 
   private key(event: KeyboardEvent): void {
-    if (event.target !== this.svg || event.ctrlKey || event.metaKey) return;
+    if (event.target !== this.svg || event.metaKey) return;
     const way = Stage.ways[event.key];
-    if (way) {
+    if (way && event.ctrlKey && !this.spherical) {
+      this.fits = false; // the view goes on that way
+      this.plane.pan([-way[0]! * 60 * U, way[1]! * 60 * U]);
+      this.view();
+    } else if (event.ctrlKey) return;
+    else if (way) {
       if (this.spherical && mode.value === "move") {
         this.globe.turn(-way[0]! * 0.08 * this.globe.radius, -way[1]! * 0.08 * this.globe.radius);
         this.view();
@@ -776,7 +793,8 @@ export class Stage {
       }
     } else if ((event.key === "Enter" || event.key === " ") && this.cursor) {
       const target = this.target(this.paper.flat(this.cursor));
-      if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
+      if (scalePhoto.value) this.measureTo(this.cursor);
+      else if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
       else this.choose(target, event.shiftKey);
     } else if (event.key === " ") {
       this.space = true;
