@@ -45,7 +45,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield one
 
 
-def audited(one: Bench, where: str = "html", *rules: str) -> list[str]:
+def serious_findings(one: Bench, where: str = "html", *rules: str) -> list[str]:
     """What axe-core finds that is serious, of all rules or of some."""
     frames(one.page)
     return list(one.page.evaluate(AUDIT, [where, list(rules)]))
@@ -58,17 +58,17 @@ def test_nothing_serious_is_found_on_any_panel(running: Any, server: Served, nam
     assert hashlib.sha256(axe).hexdigest() == AXE_SUM
     with bench(running, server.address) as one:
         one.page.evaluate(axe.decode())
-        assert audited(one) == []  # the empty canvas
+        assert serious_findings(one) == []  # the empty canvas
         one.template(name)
         one.motion()
-        assert audited(one) == []
+        assert serious_findings(one) == []
         tabs = one.page.locator('[role="tab"]')
         for k in range(tabs.count()):
             tabs.nth(k).click()
             one.until(lambda: one.page.get_attribute("#panel", "data-ready") == "true")
-            assert audited(one, "#panel") == [], tabs.nth(k).inner_text()
+            assert serious_findings(one, "#panel") == [], tabs.nth(k).inner_text()
         one.page.emulate_media(color_scheme="dark")
-        assert audited(one, "html", "color-contrast") == []
+        assert serious_findings(one, "html", "color-contrast") == []
         assert one.messages == []
 
 
@@ -79,15 +79,15 @@ def test_nothing_serious_is_found_in_any_window(running: Any, server: Served) ->
         one.motion()
         for name in ("open", "export", "photo", "keys"):
             one.page.click(f'[data-do="{name}"]')
-            assert audited(one, "dialog") == [], name
+            assert serious_findings(one, "dialog") == [], name
             one.page.keyboard.press("Escape")
         one.page.click('[data-do="text"]')
         one.page.wait_for_selector(".cm-content")
         one.page.focus('[data-kind="link"][data-name="AB"]')
         one.page.keyboard.press(" ")
-        assert audited(one) == []
+        assert serious_findings(one) == []
         one.page.emulate_media(color_scheme="dark")
-        assert audited(one, "html", "color-contrast") == []
+        assert serious_findings(one, "html", "color-contrast") == []
         assert one.messages == []
 
 

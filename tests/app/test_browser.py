@@ -44,7 +44,7 @@ def places_of(one: Bench) -> dict[str, np.ndarray]:
     return {name: np.array(place, float) for name, place in given.items()}
 
 
-def turned(vector: np.ndarray) -> np.ndarray:
+def quarter_turn(vector: np.ndarray) -> np.ndarray:
     return np.array([-vector[1], vector[0]])
 
 
@@ -69,9 +69,9 @@ def test_a_four_bar_from_an_empty_canvas(running: Any, server: Served) -> None:
         speed = float(str(speed).split()[0])
         one.choose_curve(0, "point C velocity")
         a, b, c, d = (at[name] for name in "ABCD")
-        of_b = speed * turned(b - a)
-        rates = np.linalg.solve(np.column_stack([turned(c - b), -turned(c - d)]), -of_b)
-        velocity = rates[1] * turned(c - d)
+        of_b = speed * quarter_turn(b - a)
+        rates = np.linalg.solve(np.column_stack([quarter_turn(c - b), -quarter_turn(c - d)]), -of_b)
+        velocity = rates[1] * quarter_turn(c - d)
         shown = one.values()
         scale = max(abs(velocity))
         assert abs(shown["vx(C)"] - velocity[0]) < 2 * SIX_DIGITS * max(scale, 1)
@@ -128,6 +128,82 @@ def test_a_six_bar_keeps_its_lengths(running: Any, server: Served) -> None:
         assert one.messages == []
 
 
+def unit_of(degrees: list[str]) -> np.ndarray:
+    """Unit vector of a longitude and a latitude as a file has them."""
+    longitude, latitude = (math.radians(float(one.split()[0])) for one in degrees)
+    across = math.cos(latitude)
+    return np.array([across * math.cos(longitude), across * math.sin(longitude), math.sin(latitude)])
+
+
+def begin_on_sphere(one: Bench) -> None:
+    one.gesture(lambda: one.page.click('[data-do="sphere"]'))
+
+
+def test_a_spherical_four_bar_from_an_empty_canvas(running: Any, server: Served) -> None:
+    """Five gestures, and a joint dragged; the speed of C by the loop's equations with the axes through the centre."""
+    with bench(running, server.address) as one:
+        begin_on_sphere(one)
+        one.draw((0.42, 0.62), (0.45, 0.5))
+        one.draw("B", (0.58, 0.3))
+        one.draw("C", (0.64, 0.6))
+        one.click("AB")
+        one.switch("drive")
+        one.click("D")
+        one.switch("ground")
+        one.motion()
+        one.mode("edit")
+        before = one.tables["points"]["C"]
+        one.gesture(lambda: one.drag("C", (0.6, 0.34)))
+        one.motion()
+        points = one.tables["points"]
+        assert points["C"] != before
+        a, b, c, d = (unit_of(points[name]) for name in "ABCD")
+        of_b = np.cross(a, b)
+        tangent, towards = np.cross(d, c), np.cross(b, c)
+        # C turns about D, and along the arc BC both ends have one speed
+        along = (c - (b @ c) * b) / np.linalg.norm(towards)
+        at_c = np.cross(towards, c) / np.linalg.norm(towards)
+        rate = (of_b @ along) / (tangent @ at_c) * float(one.tables["drives"][0]["speed"])
+        one.choose_curve(0, "point C velocity")
+        shown = one.values()
+        for axis, value in zip("xyz", rate * tangent, strict=True):
+            assert abs(shown[f"v{axis}(C)"] - value) < 3 * SIX_DIGITS * max(1.0, abs(rate))
+        assert one.messages == []
+
+
+def test_a_great_circle_guides_a_point_of_the_sphere(running: Any, server: Served) -> None:
+    """Drawn by keyboard: a crank, a rod, and a circle for its end; all lie where the text says."""
+    with bench(running, server.address) as one:
+        begin_on_sphere(one)
+        press = one.page.keyboard.press
+        one.page.focus(".stage-holder .drawing")
+        press("ArrowRight")
+        press("Enter")
+        for _ in range(4):
+            press("ArrowUp")
+        one.gesture(lambda: press("Enter"))
+        press("Enter")
+        for _ in range(9):
+            press("ArrowRight")
+        one.gesture(lambda: press("Enter"))
+        press("g")
+        one.page.focus(".stage-holder .drawing")
+        press("Enter")
+        for _ in range(4):
+            press("ArrowUp")
+        one.gesture(lambda: press("Enter"))
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        press(" ")
+        one.page.focus('[data-row="drive"]')
+        one.gesture(lambda: press("Enter"))
+        one.motion()
+        guide, points = one.tables["guides"][0], one.tables["points"]
+        assert guide["point"] == "C"
+        assert abs(unit_of(guide["pole"]) @ unit_of(points["C"])) < 1e-5
+        assert one.page.get_attribute('[data-kind="guide"]', "d")
+        assert one.messages == []
+
+
 def test_drawing_by_keyboard(running: Any, server: Served) -> None:
     """The cross draws the links, Tab and Enter hinge the next one on, Space selects, rows are buttons."""
     with bench(running, server.address) as one:
@@ -165,6 +241,62 @@ def test_drawing_by_keyboard(running: Any, server: Served) -> None:
         one.gesture(lambda: press("ArrowUp"))
         after = places_of(one)
         assert after["C"][1] > at["C"][1] and after["C"][0] == pytest.approx(at["C"][0], abs=1e-6)
+        assert one.messages == []
+
+
+def test_what_else_a_hand_does_is_done_by_keyboard(running: Any, server: Served) -> None:
+    """A point on a link, a guide at it, several at once, the view, the drive's place, a photo's scale, the windows."""
+    with bench(running, server.address) as one:
+        press = one.page.keyboard.press
+        one.template("crank-rocker")
+        one.motion()
+        one.page.focus('[data-kind="link"][data-name="AB"]')
+        one.gesture(lambda: press("Enter"))
+        assert one.names("point") == ["O", "D", "A", "B", "C"]
+        one.page.focus('[data-kind="link"][data-name="OA"]')
+        press(" ")
+        one.page.focus('[data-kind="link"][data-name="DB"]')
+        press("Shift+ ")
+        assert one.page.inner_text(".selection h2").startswith("2 ")
+        one.gesture(lambda: press("Control+d"))
+        assert len(one.names("link")) == 5
+        one.gesture(lambda: press("Control+z"))
+        one.motion()
+        press("m")
+        one.page.focus('[data-kind="point"][data-name="A"]')
+        before = one.page.input_value('[data-do="seek"]')
+        press("ArrowUp")
+        one.until(lambda: one.page.input_value('[data-do="seek"]') != before)
+        one.settle()
+        x, y = one.spot("O")
+        one.page.focus(".stage-holder .drawing")
+        press("Control+ArrowRight")
+        frames(one.page)
+        assert one.spot("O") == pytest.approx((x - 60, y), abs=0.2)
+        one.page.click('[data-do="photo"]')
+        one.page.locator("dialog input[type=file]").set_input_files(
+            {"name": "grey.png", "mimeType": "image/png", "buffer": base64.b64decode(GREY)}
+        )
+        one.wait("document.querySelector('.photo').getAttribute('display') === 'inline'")
+        wide = float(one.page.get_attribute(".photo", "width"))
+        one.page.locator("dialog .buttons button", has_text="scale").focus()
+        press("Enter")
+        one.page.focus(".stage-holder .drawing")
+        for key in ("ArrowRight", "Enter", "ArrowRight", "ArrowRight", "Enter"):
+            press(key)
+        one.page.wait_for_selector("#photo-length")
+        drawn = float(one.page.input_value("#photo-length"))
+        one.page.fill("#photo-length", str(3 * drawn))
+        one.page.press("#photo-length", "Enter")
+        one.until(lambda: float(one.page.get_attribute(".photo", "width")) > 2 * wide)
+        one.page.focus('[role="tab"][aria-selected="true"]')
+        press("ArrowRight")
+        assert one.page.get_attribute("#tab-motion", "aria-selected") == "false"
+        one.page.focus(".stage-holder .drawing")
+        press("?")
+        one.page.wait_for_selector("dialog.keys")
+        press("Escape")
+        one.wait("document.querySelector('dialog') === null")
         assert one.messages == []
 
 
@@ -343,6 +475,22 @@ def test_units_are_those_of_the_language(running: Any, server: Served) -> None:
         assert one.page.locator(".side .unit").first.inner_text() == "м"
 
 
+def test_the_address_of_the_window_does_not_hold_the_token(running: Any, server: Served) -> None:
+    """It is loaded again all the same; a window that nobody has given the token says what to do."""
+    with bench(running, server.address) as one:
+        one.template("crank-rocker")
+        assert server.token not in one.page.url
+        before = one.text
+        one.page.reload()
+        one.page.wait_for_selector(".bench")
+        one.settle()
+        assert one.text == before and server.token not in one.page.url
+        stranger = one.page.context.new_page()
+        stranger.goto(f"http://127.0.0.1:{server.port}/")
+        stranger.wait_for_selector(".refusal")
+        assert "centrode app" in stranger.inner_text(".refusal")
+
+
 def test_two_browsers_at_once(running: Any, server: Served) -> None:
     with bench(running, server.address) as one, bench(running, server.address) as other:
         one.template("slider-crank-offset")
@@ -436,6 +584,122 @@ def test_the_profile_follows_the_segments_of_a_cam(running: Any, server: Served)
         one.page.locator('[data-do="seek"]').fill("150")  # where the follower waits
         frames(one.page)
         assert one.page.locator(".legend .entry").first.inner_text().split(" = ")[1] == "30.000°"
+        assert one.messages == []
+
+
+def test_segments_are_added_and_deleted_by_keyboard(running: Any, server: Served) -> None:
+    """Angles of the text sum up to a turn, the follower waits in the new one, and undo brings the bytes back."""
+    with bench(running, server.address) as one:
+        one.template("indexing-cam")
+        one.motion()
+        first = one.text
+        rows = one.page.locator(".segment")
+        assert rows.count() == 4
+        one.page.locator('[data-do="add-segment"]').first.focus()
+        one.gesture(lambda: one.page.keyboard.press("Enter"))
+        one.until(lambda: rows.count() == 5)
+        angles = [float(segment["angle"].split()[0]) for segment in one.tables["segments"]]
+        assert angles == [60, 60, 60, 110, 70]
+        one.page.locator('[data-do="seek"]').fill("90")
+        frames(one.page)
+        assert one.page.locator(".legend .entry").first.inner_text().split(" = ")[1] == "24.000°"
+        one.page.locator('[data-do="delete-segment"]').nth(1).focus()
+        one.gesture(lambda: one.page.keyboard.press("Enter"))
+        one.until(lambda: rows.count() == 4)
+        assert one.text == first
+        one.gesture(lambda: one.page.keyboard.press("Control+z"))
+        assert len(one.tables["segments"]) == 5
+        select = one.page.locator(".segment select").nth(1)
+        one.gesture(lambda: select.select_option("harmonic"))
+        assert one.tables["segments"][1] == {"angle": "60 deg", "curve": "harmonic", "to": 0}
+        assert one.messages == []
+
+
+PMKS = (
+    "https://app.pmksplus.com/?0.Fe.A,0.2111.6A,A,0,0,0.0B,B,0,Fe,0.0C,C,ku,V8,0.4D,D,_W,0,0"
+    "..YRAB,AB,Fe,Fe,0,0,,A,B,,.YRBC,BC,Fe,Fe,0,0,,B,C,,.YRCD,CD,Fe,Fe,0,0,,C,D,,...NH"
+)
+
+
+def test_a_link_of_another_program_is_opened(running: Any, server: Served) -> None:
+    """The drawing of PMKS+ stands there and moves; a damaged link is refused in words and changes nothing."""
+    with bench(running, server.address) as one:
+        one.page.click('[data-do="open"]')
+        before = one.text
+        one.page.fill(LINK_FIELD, PMKS[:-40])
+        one.page.press(LINK_FIELD, "Enter")
+        one.page.wait_for_selector("dialog .bad")
+        assert one.page.inner_text("dialog .bad") and one.text == before
+        one.page.fill(LINK_FIELD, PMKS)
+        one.gesture(lambda: one.page.press(LINK_FIELD, "Enter"))
+        one.motion()
+        assert sorted(one.names("link")) == ["AB", "BC", "CD"]
+        assert one.names("point") == ["A", "D", "B", "C"] and one.page.locator("dialog").count() == 0
+        a, d = (np.array(one.spot(name)) for name in "AD")
+        assert a[1] == pytest.approx(d[1], abs=0.6)  # both lie on the x axis
+        assert one.messages == []
+
+
+def test_several_drives_follow_the_hand(running: Any, server: Served) -> None:
+    """The tip of the arm goes where it is put, the drop writes both starts, and undo takes them back."""
+    with bench(running, server.address) as one:
+        one.template("two-link-arm")
+        one.motion()
+        first = one.text
+        one.mode("move")
+        begin = np.array(one.spot("B"))
+        goal = begin + np.array([-60, -70])
+        one.gesture(lambda: one.drag("B", tuple(parts_of(one, goal))))
+        one.motion()
+        assert one.spot("B") == pytest.approx(tuple(goal), abs=1.5)
+        assert [drive["start"] for drive in one.tables["drives"]] != [0.0, 0.0]
+        one.gesture(lambda: one.page.keyboard.press("Control+z"))
+        assert one.text == first
+        assert one.messages == []
+
+
+def parts_of(one: Bench, spot: np.ndarray) -> tuple[float, float]:
+    """A place on the screen as parts of the sides of the drawing."""
+    box = one.page.locator(".stage-holder .drawing").bounding_box()
+    return (spot[0] - box["x"]) / box["width"], (spot[1] - box["y"]) / box["height"]
+
+
+def test_fingers_draw_drag_turn_and_pinch(running: Any, server: Served) -> None:
+    """Touches as the browser itself makes them: one finger draws and drags, two move and scale the paper."""
+    with bench(running, server.address, has_touch=True) as one:
+        touch = one.page.context.new_cdp_session(one.page)
+
+        def fingers(kind: str, *places: tuple[float, float]) -> None:
+            points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(places)]
+            touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+        def swipe(start: Any, end: Any) -> None:
+            (x, y), (u, v) = one.spot(start), one.spot(end)
+            fingers("touchStart", (x, y))
+            for k in range(1, 7):
+                fingers("touchMove", (x + (u - x) * k / 6, y + (v - y) * k / 6))
+            fingers("touchEnd")
+
+        one.gesture(lambda: swipe((0.25, 0.7), (0.33, 0.55)))
+        one.gesture(lambda: swipe("B", (0.65, 0.35)))
+        assert one.names("link") == ["AB", "BC"]
+        x, y = one.spot("AB")
+        one.page.touchscreen.tap(x, y)
+        one.page.wait_for_selector('[data-row="drive"]')
+        one.mode("edit")
+        before = one.tables["points"]["C"]
+        one.gesture(lambda: swipe("C", (0.7, 0.45)))
+        assert one.tables["points"]["C"] != before
+        text, apart = one.text, math.dist(one.spot("A"), one.spot("C"))
+        left, right = one.spot((0.4, 0.5)), one.spot((0.6, 0.5))
+        fingers("touchStart", left, right)
+        for k in range(1, 7):
+            fingers("touchMove", (left[0] - 10 * k, left[1]), (right[0] + 10 * k, right[1]))
+        fingers("touchEnd")
+        frames(one.page)
+        scale = (right[0] - left[0] + 120) / (right[0] - left[0])
+        assert math.dist(one.spot("A"), one.spot("C")) == pytest.approx(scale * apart, rel=0.02)
+        assert one.text == text
         assert one.messages == []
 
 

@@ -10,11 +10,11 @@ import pytest
 
 import centrode as ct
 from centrode.app.documents import read_document
-from centrode.app.edit_drags import reshape
+from centrode.app.edit_drags import edit_refusal, reshape
 from centrode.app.frames import frame_bytes, read_frame
 from centrode.app.move_drags import place_on_way, way_of
-from centrode.app.operations import Patch
-from centrode.app.scene import edit_refusal
+from centrode.app.operations import apply_operation
+from centrode.app.patches import Patch
 from centrode.app.sketch import Sketch
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import initial_place
@@ -24,7 +24,7 @@ HERE = Path()
 EXAMPLES = [name for name in example_names() if getattr(ct.example(name), "space", "") == "plane"]
 
 
-def sketched(text):
+def sketch_of(text):
     return Sketch(read_document(text, HERE))
 
 
@@ -32,7 +32,7 @@ def sketched(text):
 def test_the_dragged_joint_stands_there_in_the_motion_of_the_edited_description(name):
     """Independent of the editor: the file that it wrote is read and moved by the package."""
     text = example_text(name)
-    sketch = sketched(text)
+    sketch = sketch_of(text)
     done = 0
     for point in sketch.points:
         if edit_refusal(sketch, point):
@@ -41,7 +41,7 @@ def test_the_dragged_joint_stands_there_in_the_motion_of_the_edited_description(
         patch = Patch(text, HERE)
         try:
             reshaped = reshape(sketch, point, to, HERE)
-            patch.apply({"do": "move_point", "point": point, "to": list(to)})
+            apply_operation(patch, {"do": "move_point", "point": point, "to": list(to)})
         except InputError:
             assert patch.text == text
             continue
@@ -60,27 +60,27 @@ def test_the_dragged_joint_stands_there_in_the_motion_of_the_edited_description(
 def test_locked_lengths_and_held_joints_hold():
     text = example_text("crank-rocker")
     locked = Patch(text, HERE)
-    locked.apply({"do": "lock", "path": "links.AB.length", "on": True})
+    apply_operation(locked, {"do": "lock", "path": "links.AB.length", "on": True})
     sketch = Sketch(locked.document)
     for to in ([2.0, 3.5], [4.5, 1.0], [3.0, -2.0]):
         patch = Patch(locked.text, HERE)
-        patch.apply({"do": "move_point", "point": "B", "to": to})
+        apply_operation(patch, {"do": "move_point", "point": "B", "to": to})
         mechanism = ct.parse_mechanism(patch.text)
         assert mechanism.links["AB"].length == ct.parse_mechanism(text).links["AB"].length
         # nearest to the wish on the circle about A
         a, b = (np.array(Sketch(patch.document).places[one]) for one in "AB")
         assert b - a == pytest.approx(3.5 * (np.array(to) - a) / np.linalg.norm(np.array(to) - a), abs=1e-4)
     held = Patch(text, HERE)
-    held.apply({"do": "set_row", "object": "B", "row": "fixed", "on": True})
+    apply_operation(held, {"do": "set_row", "object": "B", "row": "fixed", "on": True})
     with pytest.raises(InputError, match="held"):
-        held.apply({"do": "move_point", "point": "B", "to": [2, 2]})
+        apply_operation(held, {"do": "move_point", "point": "B", "to": [2, 2]})
     assert not sketch.marks["fixed"]
 
 
 def test_two_locks_leave_no_freedom():
     patch = Patch(example_text("crank-rocker"), HERE)
-    patch.apply({"do": "lock", "path": "links.AB.length", "on": True})
-    patch.apply({"do": "lock", "path": "links.DB.length", "on": True})
+    apply_operation(patch, {"do": "lock", "path": "links.AB.length", "on": True})
+    apply_operation(patch, {"do": "lock", "path": "links.DB.length", "on": True})
     sketch = Sketch(patch.document)
     reshaped = reshape(sketch, "B", (9.0, 9.0), HERE)
     assert reshaped.places["B"] == pytest.approx(sketch.places["B"], abs=1e-4)
@@ -88,7 +88,7 @@ def test_two_locks_leave_no_freedom():
 
 
 def test_a_slider_stays_on_its_guide():
-    sketch = sketched(example_text("six-bar-press"))
+    sketch = sketch_of(example_text("six-bar-press"))
     reshaped = reshape(sketch, "H", (sketch.places["H"][0] + 0.1, 2.0), HERE)
     assert reshaped.places["H"] == pytest.approx((sketch.places["H"][0] + 0.1, 0.9), abs=1e-5)
     assert "guide" in reshaped.held
@@ -97,7 +97,7 @@ def test_a_slider_stays_on_its_guide():
 def test_the_centre_of_a_rod_stays_in_its_middle():
     text = example_text("six-bar-press")
     patch = Patch(text, HERE)
-    patch.apply({"do": "move_point", "point": "D", "to": [1.0, 1.7]})
+    apply_operation(patch, {"do": "move_point", "point": "D", "to": [1.0, 1.7]})
     rod = ct.parse_mechanism(patch.text).links["DH"].coordinates
     assert rod["S4"] == pytest.approx((rod["H"][0] / 2, 0.0), abs=1e-5)
 
@@ -167,6 +167,6 @@ def test_drags_by_messages(ask):
 
 
 def test_what_does_not_close_is_refused_in_words():
-    sketch = sketched(example_text("three-crank-parallelogram"))
+    sketch = sketch_of(example_text("three-crank-parallelogram"))
     with pytest.raises(CentrodeError):
         reshape(sketch, "F", (5.0, 5.0), HERE)

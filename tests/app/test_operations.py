@@ -10,7 +10,8 @@ import pytest
 
 import centrode as ct
 from centrode.app.documents import read_document
-from centrode.app.operations import Patch
+from centrode.app.operations import apply_operation
+from centrode.app.patches import Patch
 from centrode.app.sketch import Sketch
 from centrode.errors import InputError
 from centrode.model.examples import example_names, example_text
@@ -39,15 +40,15 @@ speed = 1
 """
 
 
-def patched(text, *operations):
+def patch_of(text, *operations):
     patch = Patch(text, HERE)
     for operation in operations:
-        patch.apply(operation)
+        apply_operation(patch, operation)
     return patch
 
 
 def test_a_four_bar_from_an_empty_canvas_takes_five_gestures():
-    patch = patched(
+    patch = patch_of(
         "",
         {"do": "add_link", "at": [0, 0], "to": [1, 0.5]},
         {"do": "add_link", "at": [1, 0.5], "to": [4, 2], "from_point": "B"},
@@ -64,7 +65,7 @@ def test_a_four_bar_from_an_empty_canvas_takes_five_gestures():
 
 
 def test_a_slider_crank_is_drawn():
-    patch = patched(
+    patch = patch_of(
         "",
         {"do": "add_link", "at": [0, 0], "to": [0.3, 0.4]},
         {"do": "add_link", "at": [0.3, 0.4], "to": [1.5, 0], "from_point": "B"},
@@ -78,19 +79,19 @@ def test_a_slider_crank_is_drawn():
 
 
 def test_dropping_on_a_joint_makes_a_hinge_and_joining_too():
-    apart = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3]})
+    apart = patch_of(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3]})
     assert Sketch(apart.document).owners("E") == ["EF"]
-    apart.apply({"do": "join", "points": ["E", "B"]})
+    apply_operation(apart, {"do": "join", "points": ["E", "B"]})
     assert sorted(Sketch(apart.document).owners("B")) == ["AB", "BC", "EF"]
-    hinged = patched(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3], "from_point": "B"})
+    hinged = patch_of(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3], "from_point": "B"})
     assert sorted(Sketch(hinged.document).owners("B")) == ["AB", "BC", "BE"]
 
 
 def test_a_point_on_a_link_makes_a_plate():
-    text = patched(FOUR_BAR, {"do": "add_point", "link": "BC", "at": [2, 3]}).text
+    text = patch_of(FOUR_BAR, {"do": "add_point", "link": "BC", "at": [2, 3]}).text
     mechanism = ct.parse_mechanism(text)
     assert list(mechanism.links["BC"].coordinates) == ["B", "C", "E"]
-    explicit = patched(example_text("crank-rocker"), {"do": "add_point", "link": "AB", "at": [1.0, 1.0]})
+    explicit = patch_of(example_text("crank-rocker"), {"do": "add_point", "link": "AB", "at": [1.0, 1.0]})
     mechanism = ct.parse_mechanism(explicit.text)
     start = ct.motion(mechanism, 2).position.isel(sample=0)
     assert start.sel(point="C").values == pytest.approx([1.0, 1.0], abs=1e-5)
@@ -107,15 +108,15 @@ def test_a_point_on_a_link_makes_a_plate():
     ],
 )
 def test_rows_that_are_switched_off_again_leave_every_byte(operation):
-    on = patched(FOUR_BAR, operation)
+    on = patch_of(FOUR_BAR, operation)
     assert on.text != FOUR_BAR
-    assert patched(on.text, {**operation, "on": False}).text == FOUR_BAR
+    assert patch_of(on.text, {**operation, "on": False}).text == FOUR_BAR
 
 
 def test_renaming_keeps_what_the_mechanism_does():
     text = example_text("six-bar-press")
     before = ct.motion(ct.parse_mechanism(text), 13)
-    patch = patched(
+    patch = patch_of(
         text,
         {"do": "rename", "object": "H", "name": "ram"},
         {"do": "rename", "object": "OA", "name": "crank"},
@@ -131,18 +132,18 @@ def test_renaming_keeps_what_the_mechanism_does():
 
 def test_deleting_takes_what_names_the_object():
     text = example_text("six-bar-press")
-    patch = patched(text, {"do": "delete", "objects": ["H"]})
+    patch = patch_of(text, {"do": "delete", "objects": ["H"]})
     tables = patch.document.tables
     assert "guides" not in tables and "loads" not in tables and "slider" not in tables["links"]
     assert text.splitlines()[:11] == patch.text.splitlines()[:11]  # the comments of its author
-    four_bar = patched(FOUR_BAR, {"do": "delete", "objects": ["AB", "BC", "CD"]})
+    four_bar = patch_of(FOUR_BAR, {"do": "delete", "objects": ["AB", "BC", "CD"]})
     assert four_bar.document.tables.get("links", {}) == {}
 
 
 def test_what_loses_its_position_stays_where_it_was():
     text = example_text("crank-rocker")
     before = Sketch(read_document(text, HERE))
-    patch = patched(text, {"do": "delete", "objects": ["AB"]})
+    patch = patch_of(text, {"do": "delete", "objects": ["AB"]})
     after = Sketch(patch.document)
     assert after.places["B"] == pytest.approx(before.places["B"], abs=1e-5)
     assert after.places["A"] == pytest.approx(before.places["A"], abs=1e-5)
@@ -150,17 +151,39 @@ def test_what_loses_its_position_stays_where_it_was():
 
 def test_mirroring_twice_gives_the_same_bytes():
     mirror = {"do": "mirror", "objects": ["AB", "BC", "CD"], "axis": "x"}
-    once = patched(FOUR_BAR, mirror)
+    once = patch_of(FOUR_BAR, mirror)
     assert Sketch(once.document).places["B"] == pytest.approx((1.0, 1.5))
-    assert ct.parse_mechanism(patched(once.text, mirror).text) == ct.parse_mechanism(FOUR_BAR)
+    assert ct.parse_mechanism(patch_of(once.text, mirror).text) == ct.parse_mechanism(FOUR_BAR)
 
 
 def test_duplicates_stand_beside():
-    patch = patched(FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "by": [0, -2]})
+    patch = patch_of(FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "by": [0, -2]})
     sketch = Sketch(patch.document)
     copies = [name for name in patch.named if name in sketch.points]
     assert [sketch.places[name] for name in copies] == [(0, -2), (1, -1.5)]
     assert copies[0] in sketch.fixed
+
+
+@pytest.mark.parametrize(
+    ("name", "link"), [("crank-rocker", "AB"), ("six-bar-press", "DH"), ("pantograph", None)]
+)
+def test_copies_of_links_with_lengths_hang_on_a_point_of_the_frame(name, link):
+    """Also of links that have none: every point of the copy stands as far away as the first one."""
+    text = example_text(name)
+    before = Sketch(read_document(text, HERE))
+    chosen = (
+        [link]
+        if link
+        else [one for one, points in before.links.items() if not set(points) & set(before.fixed)]
+    )
+    patch = patch_of(text, {"do": "duplicate", "objects": chosen, "by": [0.3, -0.2]})
+    after = Sketch(patch.document)
+    originals = list(dict.fromkeys(point for one in chosen for point in before.links[one]))
+    copies = [one for one in patch.named if one in after.points]
+    assert len(copies) == len(originals) and set(copies) & set(after.fixed)
+    for old, new in zip(originals, copies, strict=True):
+        x, y = before.places[old]
+        assert after.places[new] == pytest.approx((x + 0.3, y - 0.2), abs=2e-4 * before.size)
 
 
 @pytest.mark.parametrize("name", ["crank-rocker", "six-bar-press", "slider-crank-offset", "watt-six-bar"])
@@ -170,7 +193,7 @@ def test_a_length_that_is_typed_holds_the_others(name):
     link = next(one for one in sketch.links if sketch.length(one) is not None)
     factor = {"mm": 1000.0, "cm": 100.0}.get(sketch.tables.get("display", {}).get("length"), 1.0)
     length = sketch.length(link) * 1.05
-    patch = patched(text, {"do": "set", "path": f"links.{link}.length", "value": f"{length * factor!r}"})
+    patch = patch_of(text, {"do": "set", "path": f"links.{link}.length", "value": f"{length * factor!r}"})
     after = Sketch(patch.document)
     assert after.length(link) == pytest.approx(length, rel=1e-12)
     for other in sketch.links:
@@ -180,7 +203,7 @@ def test_a_length_that_is_typed_holds_the_others(name):
 
 
 def test_a_length_in_points_moves_what_follows():
-    patch = patched(FOUR_BAR, {"do": "set", "path": "links.AB.length", "value": "1.4"})
+    patch = patch_of(FOUR_BAR, {"do": "set", "path": "links.AB.length", "value": "1.4"})
     before, after = Sketch(read_document(FOUR_BAR, HERE)), Sketch(patch.document)
     assert after.length("AB") == pytest.approx(1.4, abs=2e-5)
     assert after.length("BC") == pytest.approx(before.length("BC"), abs=3e-5)
@@ -191,7 +214,7 @@ def test_units_are_those_of_the_author():
     text = FOUR_BAR.replace("A = [0, 0]", 'A = ["0 mm", "0 mm"]').replace(
         "B = [1, 0.5]", 'B = ["1000 mm", "50 cm"]'
     )
-    patch = patched(text, {"do": "move_point", "point": "B", "to": [0.9, 0.61]})
+    patch = patch_of(text, {"do": "move_point", "point": "B", "to": [0.9, 0.61]})
     assert 'B = ["900 mm", "61 cm"]' in patch.text
 
 
@@ -215,7 +238,7 @@ REFUSALS = [
 def test_what_cannot_be_is_refused_and_nothing_changes(operation, said):
     patch = Patch(FOUR_BAR, HERE)
     with pytest.raises(InputError, match=said.replace("(", r"\(")):
-        patch.apply(operation)
+        apply_operation(patch, operation)
     assert patch.text == FOUR_BAR
 
 
@@ -231,7 +254,7 @@ def test_deleting_and_renaming_any_object_keeps_the_comments(name):
         ):
             patch = Patch(text, HERE)
             try:
-                patch.apply(operation)
+                apply_operation(patch, operation)
             except InputError:
                 assert patch.text == text
                 continue
@@ -245,7 +268,7 @@ def test_undo_is_the_text_before():
     for k in range(100):
         angle = 0.06 * k
         operation = {"do": "move_point", "point": "C", "to": [4 + math.cos(angle), 2 + 0.5 * math.sin(angle)]}
-        texts.append(patched(texts[-1], operation).text)
+        texts.append(patch_of(texts[-1], operation).text)
     assert len(set(texts)) > 90
     # every state is a text, and reading it does not change it
     assert all(read_document(text, HERE).text == text for text in texts)

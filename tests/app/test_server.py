@@ -13,7 +13,7 @@ from centrode.app.answers import Workbench
 from centrode.app.documents import TEXT_SIZE, digest_of
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import read_frame
-from centrode.app.server import MESSAGE_SIZE, ServerSettings, server_application
+from centrode.app.server import CODE_SECONDS, MESSAGE_SIZE, OneTimeCodes, ServerSettings, server_application
 from centrode.app.workers import DirectRunner, ProcessRunner, reply_to
 from centrode.errors import InputError
 from centrode.locale import speaking
@@ -181,7 +181,7 @@ def test_every_template_has_a_scene(ask, name):
 LETTERS = '"=[]{}#,.\n\\0aß\u2028'
 
 
-def mutated(source, message):
+def mutate(source, message):
     """A message with something changed: a value of another kind, a text with other letters, a key left out."""
     message = json.loads(json.dumps(message))
     key = source.choice(sorted(message))
@@ -229,7 +229,7 @@ def test_mutated_messages_have_answers(tmp_path):
     for _k in range(1000):
         message = source.choice(messages)
         for _change in range(source.randrange(1, 4)):
-            message = mutated(source, message) if message else messages[0]
+            message = mutate(source, message) if message else messages[0]
         before = time.process_time()
         reply = reply_to(bench, {"id": 5, **message})
         longest = max(longest, time.process_time() - before)
@@ -331,3 +331,26 @@ def test_the_address_brings_the_language_of_the_command(settings):
 def test_tokens_differ(tmp_path):
     made = {ServerSettings(WorkFolder(tmp_path), 1).token for _k in range(20)}
     assert len(made) == 20 and all(len(token) >= 32 for token in made)
+
+
+def test_a_code_is_good_once_and_not_for_long():
+    now = [0.0]
+    codes = OneTimeCodes(lambda: now[0])
+    first, second, third = (codes.issue() for _ in range(3))
+    assert codes.redeem(first) and not codes.redeem(first)
+    now[0] = CODE_SECONDS
+    assert codes.redeem(second)
+    now[0] = CODE_SECONDS + 1.0
+    assert not codes.redeem(third)
+    assert not codes.redeem(None) and not codes.redeem("x")
+
+
+def test_a_page_gets_the_token_by_a_code_and_says_what_to_do_without_one(client, settings):
+    opening = settings.opening_address()
+    assert settings.token not in opening
+    assert settings.token in client.get(opening).text
+    again = client.get(opening)
+    assert again.status_code == 403 and settings.token not in again.text
+    bare = client.get("/", headers={"Accept-Language": "ru"})
+    assert bare.status_code == 200 and settings.token not in bare.text and "centrode app" in bare.text
+    assert client.get("/", headers={"Host": "evil.example:8123"}).status_code == 403

@@ -7,6 +7,8 @@ import signal
 import socket
 import subprocess
 import sys
+import time
+import urllib.error
 import urllib.request
 from pathlib import Path
 
@@ -49,12 +51,16 @@ LONGEST = 120.0
 """Seconds after which what has not ended is a failure."""
 
 
-def begun(arguments: list[str], folder: Path) -> subprocess.Popen[str]:
+def begun(arguments: list[str], folder: Path, **environment: str) -> subprocess.Popen[str]:
     """A program of its own, and all that it starts, which write into its pipes."""
     return subprocess.Popen(
         [sys.executable, *arguments],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
+            **environment,
+        },
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -110,3 +116,36 @@ def test_an_interrupt_ends_the_command_without_a_word(tmp_path: Path) -> None:
         os.killpg(command.pid, signal.SIGINT)
         out, err = command.communicate(timeout=LONGEST)
         assert (command.returncode, out, err) == (0, "", "")
+
+
+LOOKED = """#!/bin/sh
+echo "$@" > "$0.part"
+mv "$0.part" "$0.arguments"
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the browser of this test is a script of a shell")
+def test_what_starts_the_browser_is_good_once_and_does_not_hold_the_token(tmp_path: Path) -> None:
+    """Every user of a machine can read the arguments of a browser."""
+    program = tmp_path / "browser"
+    program.write_text(LOOKED, "utf-8")
+    program.chmod(0o755)
+    arguments = program.with_name("browser.arguments")
+    with begun(["-m", "centrode", "app", "--port", "0"], tmp_path, BROWSER=f"{program} %s") as command:
+        assert command.stdout is not None
+        printed = command.stdout.readline().split()[-1]
+        token = printed.partition("token=")[2]
+        assert len(token) >= 32
+        until = time.monotonic() + LONGEST
+        while not arguments.exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        opened = arguments.read_text("utf-8").strip()
+        assert opened.startswith("http://127.0.0.1:") and token not in opened
+        with urllib.request.urlopen(opened, timeout=LONGEST) as page:
+            assert token in page.read().decode()
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(opened, timeout=LONGEST)
+        with urllib.request.urlopen(printed, timeout=LONGEST) as page:  # as often as one likes
+            assert page.status == 200
+        command.terminate()
+        command.communicate(timeout=LONGEST)

@@ -52,6 +52,119 @@ def test_points_give_the_mechanism_of_lengths_and_angles(name: str) -> None:
     assert ct.parse_mechanism(ct.mechanism_text(read)) == read
 
 
+ON_THE_SPHERE = [
+    "spherical-four-bar",
+    "spherical-crank-rocker",
+    "spherical-crank-guide",
+    "hookes-joint",
+    "wobble-plate",
+]
+
+
+@pytest.mark.parametrize("name", ON_THE_SPHERE)
+def test_points_on_the_sphere_give_the_mechanism_of_arcs(name: str) -> None:
+    """Longitudes and latitudes in place of arcs, angles and sides; the circle of a guide goes through its point."""
+    mechanism = ct.example(name)
+    tables = by_points(mechanism)
+    for point, place in tables["points"].items():
+        longitude_latitude = place
+        if len(place) == 3:
+            x, y, z = place
+            longitude_latitude = [math.atan2(y, x), math.atan2(z, math.hypot(x, y))]
+        tables["points"][point] = [f"{value!r} rad" for value in longitude_latitude]
+    for guide in tables.get("guides", ()):
+        guide.pop("radius", None)
+    for drive in tables["drives"]:
+        drive.pop("start", None)
+    read = ct.Mechanism(**tables)
+    for link, part in mechanism.links.items():
+        if part.length is not None:
+            assert read.links[link].length == pytest.approx(part.length, abs=1e3 * EPS)
+    expected, found = ct.motion(mechanism, 25), ct.motion(read, 25)
+    assert found.position.values == pytest.approx(expected.position.values, rel=0, abs=1e5 * EPS)
+    assert (found.status.values == expected.status.values).all()
+    assert ct.parse_mechanism(ct.mechanism_text(read)) == read
+
+
+SPHERE: dict[str, Any] = {
+    "space": "sphere",
+    "display": {"angle": "deg"},
+    "points": {
+        "A": [0, 0],
+        "B": ["0 deg", "30 deg"],
+        "C": ["60 deg", "45 deg"],
+        "D": ["90 deg", 0],
+        "P": ["0 deg", "50 deg"],
+    },
+    "frame": {"points": ["A", "D"]},
+    "links": {"AB": {}, "coupler": {"points": ["B", "C", "P"]}, "DC": {}},
+    "drives": [{"link": "AB", "speed": 1}],
+}
+
+
+def test_arcs_and_angles_by_hand() -> None:
+    """AB is a piece of a meridian: 30 deg long, at right angles to the equator that joins A and D."""
+    read = ct.Mechanism(**SPHERE)
+    assert read.links["AB"].length == pytest.approx(math.pi / 6, rel=4 * EPS)
+    assert read.links["AB"].reference == ("A", "D")
+    assert read.drives[0].start == pytest.approx(math.pi / 2, rel=4 * EPS)
+    # P goes on along the meridian: 20 deg from B; cos BC = sin 30 sin 45 + cos 30 cos 45 cos 60
+    arcs = read.links["coupler"].points
+    cosine = 0.5 * math.sqrt(0.5) + math.sqrt(0.75) * math.sqrt(0.5) * 0.5
+    assert arcs["C"] == pytest.approx((math.acos(cosine), 0.0), rel=8 * EPS)
+    longitude, latitude = arcs["P"]
+    assert math.cos(latitude) * math.cos(longitude) == pytest.approx(math.cos(math.pi / 9), rel=8 * EPS)
+    closed = ct.motion(read, at=["90 deg"]).position.sel(point="P").values[0]
+    assert closed == pytest.approx([math.cos(math.radians(50)), 0, math.sin(math.radians(50))], abs=1e-13)
+
+
+def test_a_drive_on_the_sphere_counts_from_the_link_that_carries_it() -> None:
+    """An arm of two links: the second angle is measured from the first link, on from A."""
+    arm = {
+        **SPHERE,
+        "points": {**SPHERE["points"], "B": ["30 deg", 0], "C": ["30 deg", "20 deg"]},
+        "links": {"AB": {}, "BC": {}},
+        "drives": [{"link": "AB", "speed": 1}, {"link": "BC", "relative_to": "AB", "speed": 1}],
+    }
+    read = ct.Mechanism(**arm)
+    assert read.links["BC"].reference == ("B", "A")
+    assert [drive.start for drive in read.drives] == pytest.approx([0.0, -math.pi / 2], abs=4 * EPS)
+    place = ct.motion(read, at=[0.0]).position.sel(point="C").values[0]
+    latitude, longitude = math.radians(20), math.radians(30)
+    assert place == pytest.approx(
+        [
+            math.cos(latitude) * math.cos(longitude),
+            math.cos(latitude) * math.sin(longitude),
+            math.sin(latitude),
+        ],
+        abs=1e-14,
+    )
+
+
+def on_sphere(**changes: Any) -> dict[str, Any]:
+    return {**SPHERE, **changes}
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        (on_sphere(points={**SPHERE["points"], "B": ["180 deg", 0]}), "coincide, or lie opposite"),
+        (on_sphere(points={**SPHERE["points"], "B": ["0 deg", "95 deg"]}), "a latitude must lie between"),
+        (on_sphere(frame={"points": {"A": [0, "1 deg"], "D": ["90 deg", 0]}}), 'point "A" is given twice'),
+        (
+            on_sphere(links={"AB": {"length": "30 deg", "points": ["A", "B"]}}),
+            "length follows from its points",
+        ),
+        (on_sphere(drives=[{"link": "AB", "speed": 1, "start": "30 deg"}]), 'the points put "AB" at 90 deg'),
+        (on_sphere(frame={"points": ["A"]}, links={"AB": {}}), "reference is missing"),
+    ],
+)
+def test_points_on_the_sphere_that_cannot_be(parts: dict[str, Any], message: str) -> None:
+    with pytest.raises(ct.InputError) as refused:
+        ct.Mechanism(**parts)
+    assert message in str(refused.value)
+
+
 FOUR_BAR: dict[str, Any] = {
     "points": {"O": [0, 0], "A": [1, 1], "B": [4, 3], "D": [5, 0], "P": [3, 4]},
     "frame": {"points": ["O", "D"]},
@@ -100,7 +213,6 @@ def changed(**changes: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
-        (changed(space="sphere"), "in the plane only"),
         (
             changed(frame={"points": {"O": [0, 0.1], "D": [5, 0]}}),
             'point "O" is given twice, in different places',

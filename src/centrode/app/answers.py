@@ -11,13 +11,15 @@ from typing import Any, TypeAlias
 from centrode.app.cam_scene import cam_scene
 from centrode.app.completion import completions
 from centrode.app.documents import TEXT_SIZE, Document, digest_of, read_document
+from centrode.app.drive_space import has_free_place, initial_values, place_in_drive_space
 from centrode.app.edit_drags import reshape
 from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
 from centrode.app.move_drags import motion_answer, place_on_way, way_of
-from centrode.app.operations import Patch, apply_operations
+from centrode.app.operations import apply_operations
 from centrode.app.panels import panel_of, topic_list, topics_of
+from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
 from centrode.app.scene import scene_of
 from centrode.app.sketch import Sketch
@@ -28,6 +30,7 @@ from centrode.locale import LANGUAGES, _, chosen_language, decimal_mark, speakin
 from centrode.model.examples import example_text
 from centrode.model.files import mechanism_text
 from centrode.model.pmks import from_pmks
+from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import UNIT_SYMBOLS, spelled_unit
 from centrode.version import __version__
 
@@ -201,13 +204,16 @@ class Workbench:
         document, point, to = self.document(message), message.get("point"), _place_of(message.get("to"))
         if not isinstance(point, str):
             raise InputError("", _("the message names no point"))
+        if len(to) != (3 if Sketch(document).on_sphere else 2):
+            raise InputError("", _("a place is two numbers, on the sphere three"))
+        if message.get("mode") == "move" and has_free_place(document):
+            return self._drives_answer(message, document, point, to)
         if message.get("mode") == "move":
             return self._move_answer(message, document, point, to)
         sketch = Sketch(document)
         if message.get("drop"):
-            patch = Patch(document.text, self.work.folder)
-            patch.apply({"do": "move_point", "point": point, "to": list(to)})
-            return self._patch_answer(patch)
+            move = {"do": "move_point", "point": point, "to": list(to)}
+            return self._patch_answer(apply_operations(document.text, self.work.folder, [move]))
         reshaped = reshape(sketch, point, to, self.work.folder)
         places = [list(reshaped.places.get(name, (math.nan, math.nan))) for name in sketch.points]
         angles = [math.nan] * len(sketch.links)
@@ -219,11 +225,36 @@ class Workbench:
     def _move_answer(self, message: Message, document: Document, point: str, to: tuple[float, ...]) -> Answer:
         way = way_of(document)
         drive = message.get("drive")
-        present = float(drive) if isinstance(drive, int | float) and math.isfinite(drive) else None
+        present = float(drive) if isinstance(drive, int | float) and _is_finite(drive) else None
         at = place_on_way(way, point, np.asarray(to), present)
         points, angles, status = way.at(at)
         header = {"id": message.get("id", 0), "at": at, "status": [status], "values": {}, "held": None}
         return frame_bytes(header, {"points": points, "angles": angles})
+
+    def _drives_answer(
+        self, message: Message, document: Document, point: str, to: tuple[float, ...]
+    ) -> Answer:
+        """Where a point of a mechanism with several drives, or without laws, is nearest to the cursor."""
+        sketch, prepared = Sketch(document), document.position
+        assert prepared is not None
+        if point not in prepared.mechanism.moving_points:
+            raise InputError(point, _("this point does not move"))
+        values = initial_values(prepared)
+        given, time = message.get("drives"), message.get("drive")
+        if isinstance(given, Mapping):
+            values |= {name: float(given[name]) for name in values if _is_finite(given.get(name))}
+        elif document.prepared is not None and _is_finite(time):
+            moved = prepared.kinematics.path.drive_values(ARRAYS, np.float64(time))
+            values |= {name: float(value) for name, value in moved.items()}
+        position = place_in_drive_space(prepared, point, np.asarray(to), values)
+        if message.get("drop"):
+            starts = {"do": "set_starts", "drives": position.values}
+            return self._patch_answer(apply_operations(document.text, self.work.folder, [starts]))
+        absent = np.full(len(to), math.nan)
+        points = [position.points.get(name, absent) for name in sketch.points]
+        angles = [position.angles.get(name, math.nan) for name in sketch.links]
+        header = {"id": message.get("id", 0), "drives": position.values, "status": [0], "values": {}}
+        return frame_bytes({**header, "held": None}, {"points": points, "angles": angles})
 
     def motion(self, message: Message) -> Answer:
         """The motion of the description over its range."""
@@ -302,7 +333,11 @@ def _place_of(value: object) -> tuple[float, ...]:
         numbers = [float(one) for one in value if isinstance(one, int | float) and not isinstance(one, bool)]
         if len(numbers) == len(value) and all(math.isfinite(one) and abs(one) < 1e9 for one in numbers):
             return tuple(numbers)
-    raise InputError("", _("a place is two numbers"))
+    raise InputError("", _("a place is two numbers, on the sphere three"))
+
+
+def _is_finite(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def path_of_folder(file: Path | None) -> Path:

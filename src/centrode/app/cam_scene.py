@@ -2,51 +2,35 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
+from centrode.app.cam_segments import segment_rows
 from centrode.app.documents import Document
-from centrode.app.sketch import list_of_tables
+from centrode.app.quantity_texts import field_text
+from centrode.app.sketch import display_units, list_of_tables
 from centrode.cams.cam import cam as course_of
 from centrode.cams.followers.base_circle import has_profile
 from centrode.cams.results import cam_profile
 from centrode.errors import CentrodeError
-from centrode.locale import _, decimal_mark
+from centrode.locale import _
 from centrode.model.follower_cam import PlateCam
-from centrode.quantities import ANGLES, LENGTHS
+from centrode.model.units import number_and_unit
 
 SAMPLES = 361
-CURVES = (
-    "dwell", "uniform", "parabolic", "harmonic", "cycloidal", "3-4-5", "4-5-6-7", "trapezoid", "modified sine",
-    "modified trapezoid",
-)  # fmt: skip
-"""Curves of a segment that need nothing but its ends."""
-DIGITS = 6
-_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
     """The scene of a cam, right or not."""
-    display = document.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    length, angle = display.get("length", "m"), display.get("angle", "rad")
     title = document.tables.get("title")
     return {
         "title": _(title) if isinstance(title, str) else "",
         "kind": "cam",
-        "unit": length if length in LENGTHS else "m",
-        "display": {
-            "length": {"unit": length, "factor": LENGTHS.get(length, 1.0)},
-            "angle": {"unit": angle, "factor": ANGLES.get(angle, 1.0)},
-        },
+        "display": display_units(document.tables),
         "size": [[-1.0, -1.0], [1.0, 1.0]],
-        **{
-            key: []
-            for key in ("points", "links", "guides", "drives", "wheels", "gears", "cylinders", "loads")
-        },
+        **{key: [] for key in ("points", "links", "guides", "drives", "wheels", "cylinders", "loads")},
         "rows": {},
         "dimensions": list(_dimensions(document)),
         "cam": _cam(document),
@@ -60,11 +44,10 @@ def _cam(document: Document) -> dict[str, Any]:
         "base": None,
         "roller": None,
         "displacement": None,
-        "segments": [],
+        "segments": list(segment_rows(document)),
     }
     cam = document.cam
     if isinstance(cam, PlateCam):
-        found["segments"] = list(_segments(document))
         found["displacement"] = _displacement(cam)
     if cam is None:
         return found
@@ -110,28 +93,6 @@ def _finite(value: float) -> float | None:
     return float(f"{value:.7g}") if np.isfinite(value) else None
 
 
-def _segments(document: Document) -> Iterator[dict[str, Any]]:
-    """Segments with the angles at which they begin and end [rad], in the order of the text."""
-    cam = document.cam
-    assert isinstance(cam, PlateCam)
-    start, level = 0.0, 0.0
-    for k, segment in enumerate(cam.segments):
-        stop = start + segment.angle
-        end = level if segment.to is None else segment.to
-        kind = "dwell" if end == level else "rise" if end > level else "fall"
-        yield {
-            "path": f"segments.{k}",
-            "from": start,
-            "to": stop,
-            "kind": kind,
-            "law": segment.curve,
-            "start": level,
-            "lift": end,
-            "laws": list(CURVES),
-        }
-        start, level = stop, end
-
-
 def _dimensions(document: Document) -> Iterator[dict[str, Any]]:
     """Numbers of the body, the follower and the segments, as the text has them."""
     for room in ("cam", "follower"):
@@ -146,16 +107,16 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
     for key, value in table.items():
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             continue
-        found = _QUANTITY.fullmatch(str(value))
+        found = number_and_unit(str(value))
         if found is None:
             continue
-        number = float(found.group(1))
+        number = float(found[0])
         yield {
             "of": owner,
             "path": f"{path}.{key}",
             "name": key.replace("_", " "),
             "value": number,
-            "unit": found.group(2),
-            "shown": f"{number:.{DIGITS}g}".replace(".", decimal_mark()),
+            "unit": found[1],
+            "shown": field_text(number),
             "locked": False,
         }

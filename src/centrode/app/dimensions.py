@@ -6,37 +6,29 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from centrode.app.sketch import Sketch
-from centrode.locale import decimal_mark
-from centrode.quantities import ANGLES, LENGTHS
+from centrode.app.quantity_texts import field_text
+from centrode.app.sketch import Sketch, display_units
 
-DIGITS = 6
+SIGNS = {False: ("x", "y"), True: ("λ", "β")}
+"""Signs of coordinates in the plane, and of longitude and latitude on the sphere."""
 
 
 def dimension_rows(sketch: Sketch) -> list[dict[str, Any]]:
     """Each number with its path, its name, its value in the unit of the display, and whether it is locked."""
-    return [] if sketch.on_sphere else list(_rows(sketch))
+    return list(_rows(sketch))
 
 
 def _rows(sketch: Sketch) -> Iterator[dict[str, Any]]:
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    length, angle = display.get("length", "m"), display.get("angle", "rad")
-    units = {
-        "length": (length, LENGTHS.get(length, 1.0)),
-        "angle": (angle, ANGLES.get(angle, 1.0)),
-    }
+    units = display_units(sketch.tables)
     for owner, path, name, value, kind in _numbers(sketch):
-        unit, factor = units[kind]
-        shown = value * factor
-        text = f"{shown:.{DIGITS}g}".replace(".", decimal_mark())
+        shown = value * units[kind]["factor"]
         yield {
             "of": owner,
             "path": path,
             "name": name,
             "value": shown,
-            "unit": unit,
-            "shown": text,
+            "unit": units[kind]["unit"],
+            "shown": field_text(shown),
             "locked": path in sketch.marks["locked"],
         }
 
@@ -45,7 +37,7 @@ def _numbers(sketch: Sketch) -> Iterator[tuple[str, str, str, float, str]]:
     for name in sketch.links:
         length = sketch.length(name)
         if length is not None:
-            yield name, f"links.{name}.length", "l", length, "length"
+            yield name, f"links.{name}.length", "l", length, "angle" if sketch.on_sphere else "length"
         if name in sketch.poses and sketch.drives_of(name):
             angle = math.remainder(sketch.poses[name][1], math.tau)
             start = sketch.drives[sketch.drives_of(name)[0]].get("start")
@@ -54,5 +46,10 @@ def _numbers(sketch: Sketch) -> Iterator[tuple[str, str, str, float, str]]:
     for point in sketch.points:
         if point in sketch.places and (sketch.is_short_form or point in sketch.fixed):
             room = "points" if point not in sketch.fixed or sketch.is_short_form else "frame.points"
-            for axis, x in zip("xy", sketch.places[point], strict=False):
-                yield point, f"{room}.{point}.{axis}", axis, x, "length"
+            if sketch.on_sphere and not sketch.is_short_form:
+                continue
+            kind = "angle" if sketch.on_sphere else "length"
+            for axis, sign, x in zip(
+                sketch.axes, SIGNS[sketch.on_sphere], sketch.numbers_of(sketch.places[point]), strict=True
+            ):
+                yield point, f"{room}.{point}.{axis}", sign, x, kind

@@ -66,6 +66,7 @@ class Document:
     tables : as complete as the text allows; empty where nothing can be read
     mechanism, cam : what it describes; None where something is wrong with it
     prepared : the mechanism with its plan and initial position; None where it does not assemble
+    free : where a drive has no law, so that only a simulation moves the mechanism: its initial position all the same
     problems : in the order of the text
     """
 
@@ -75,6 +76,12 @@ class Document:
     cam: AnyCam | None
     prepared: Ready | None
     problems: tuple[TextProblem, ...]
+    free: Ready | None = None
+
+    @property
+    def position(self) -> Ready | None:
+        """The mechanism in its initial position, whether its drives have laws or not."""
+        return self.prepared or self.free
 
     @property
     def digest(self) -> str:
@@ -141,7 +148,22 @@ def _kept_document(text: str, folder: Path, _language: str) -> Document:
     try:
         return Document(text, tables, mechanism, None, ready(mechanism), ())
     except CentrodeError as error:
-        return Document(text, tables, mechanism, None, None, (_at_place(error, text),))
+        return Document(
+            text, tables, mechanism, None, None, (_at_place(error, text),), _free_position(mechanism)
+        )
+
+
+def _free_position(mechanism: Mechanism) -> Ready | None:
+    """The initial position of a mechanism with free coordinates: where a drive stands does not depend on its law."""
+    drives = tuple(
+        drive if drive.has_law else drive.model_copy(update={"speed": 1.0}) for drive in mechanism.drives
+    )
+    if drives == mechanism.drives:
+        return None
+    try:
+        return ready(mechanism.model_copy(update={"drives": drives}))
+    except CentrodeError:
+        return None
 
 
 def _validation_problems(error: ValidationError, text: str) -> Iterator[TextProblem]:

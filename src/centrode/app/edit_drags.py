@@ -6,12 +6,21 @@ import copy
 import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from operator import mul
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from centrode.app.quantity_texts import written_quantity
-from centrode.app.scene import edit_refusal, guide_line
-from centrode.app.sketch import Pose, Sketch, Vector, number
+from centrode.app.sketch import (
+    Pose,
+    Sketch,
+    Vector,
+    guide_circle,
+    guide_line,
+    list_of_tables,
+    number,
+    on_unit_sphere,
+)
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
@@ -68,9 +77,15 @@ def reshape(
     why = edit_refusal(sketch, point)
     if why:
         raise InputError(point, why)
-    if len(to) != 2 or not all(map(math.isfinite, to)):
+    if sketch.on_sphere:
+        goal = on_unit_sphere(to) if len(to) == 3 else None
+        if goal is None:
+            raise InputError(point, _("a place on the sphere is three numbers"))
+        allowed, held = allowed_on_sphere(sketch, point, goal)
+    elif len(to) != 2 or not all(map(math.isfinite, to)):
         raise InputError(point, _("a place is two numbers"))
-    allowed, held = allowed_place(sketch, point, (to[0], to[1]))
+    else:
+        allowed, held = allowed_place(sketch, point, (to[0], to[1]))
     return reshaped_by(sketch, moved_with(sketch, point, allowed), folder, held=held, exactly=exactly)
 
 
@@ -98,7 +113,7 @@ def reshaped_by(
         # at a limit, and with redundant constraints, rounded numbers may not close
         return reshaped_by(sketch, moved, folder, held=held, exactly=True)
     at = prepared.assembled.positions.points
-    places = {name: (float(at[name][0]), float(at[name][1])) for name in sketch.points if name in at}
+    places = {name: tuple(map(float, at[name])) for name in sketch.points if name in at}
     return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)
 
 
@@ -131,7 +146,7 @@ def _assemble(
 
 def _stands(sketch: Sketch, prepared: Ready, point: str, place: Vector) -> bool:
     at = prepared.assembled.positions.points[point]
-    return math.dist((float(at[0]), float(at[1])), place) <= STANDS * sketch.size
+    return math.dist(tuple(map(float, at)), place) <= STANDS * sketch.size
 
 
 def prepared_from(tables: Mapping[str, Any], folder: Path) -> Ready:
@@ -159,11 +174,12 @@ def _values(sketch: Sketch, places: Mapping[str, Vector], moved: Mapping[str, Ve
     values: dict[str, float] = {}
     for name, points in sketch.links.items():
         if len(points) == 2 and any(point in moved for point in points) and all(p in places for p in points):
-            values[f"links.{name}.length"] = math.dist(places[points[0]], places[points[1]])
+            values[f"links.{name}.length"] = sketch.distance(places[points[0]], places[points[1]])
     for point in moved:
         room = "points" if sketch.is_short_form else "frame.points"
         if sketch.is_short_form or point in sketch.fixed:
-            values |= {f"{room}.{point}.{axis}": x for axis, x in zip("xy", places[point], strict=True)}
+            numbers = zip(sketch.axes, sketch.numbers_of(places[point]), strict=True)
+            values |= {f"{room}.{point}.{axis}": x for axis, x in numbers}
     return values
 
 
@@ -216,11 +232,10 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
         now = tuple(map(float, at[point]))
         apart = math.dist(now, place) > ON_LINE * sketch.size
         if apart and sketch.is_short_form and point in sketch.tables["points"]:
-            old = sketch.tables["points"][point]
-            for axis in range(2):
-                value = written_quantity(sketch, old[axis], now[axis], "length")
-                if value != old[axis]:
-                    yield ("points", point, axis), value
+            place_of_point: Place = ("points", point)
+            for key_of_point, number_there in written_place(sketch, place_of_point, now):
+                if number_there != value_at_place(sketch.tables, key_of_point):
+                    yield key_of_point, number_there
     for name in sketch.links:
         key: Place = ("links", name, "angle")
         old_angle = value_at_place(sketch.tables, key)
@@ -256,6 +271,21 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
 # Where the joint may stand: guides and locked lengths hold.
 
 
+def edit_refusal(sketch: Sketch, name: str) -> str:
+    """Why a point cannot be dragged to change lengths; empty where it can."""
+    if sketch.on_sphere and not sketch.is_short_form:
+        return _("on the sphere lengths and angles are changed in the text or in the fields")
+    if name in sketch.marks["fixed"]:
+        return _("this joint is held: switch Fixed off to drag it")
+    if name not in sketch.places:
+        return _("its place is not known: correct the description first")
+    wheels = list_of_tables(sketch.tables, "rolling")
+    turned = {wheel.get("centre") for wheel in wheels}
+    if name in turned:
+        return _("the centre of a rolling wheel follows from its track: change the radii in the text")
+    return ""
+
+
 def allowed_place(sketch: Sketch, point: str, to: tuple[float, float]) -> tuple[Vector, str]:
     """The place nearest to a wish at which guides and locked lengths hold, and why it is not the wish itself."""
     lines = [
@@ -282,6 +312,32 @@ def allowed_place(sketch: Sketch, point: str, to: tuple[float, float]) -> tuple[
     if circles:
         return _on_circle(circles[0], to), _("the locked length holds")
     return to, ""
+
+
+def allowed_on_sphere(sketch: Sketch, point: str, to: Vector) -> tuple[Vector, str]:
+    """The same on the sphere: a guide is a circle about its pole, a locked length one about the link's other point."""
+    circles: list[tuple[Vector, float]] = []
+    for k in sketch.guides_of(point):
+        circle = guide_circle(sketch, k)
+        if circle is not None:
+            circles.append(circle)
+    guided = bool(circles)
+    for name in sketch.owners(point):
+        length = sketch.length(name)
+        if f"links.{name}.length" in sketch.marks["locked"] and length is not None:
+            other = next(one for one in sketch.links[name] if one != point)
+            if other in sketch.places:
+                circles.append((sketch.places[other], length))
+    if not circles:
+        return to, ""
+    if len(circles) > 1:
+        return sketch.places[point], _("what is locked leaves this joint no freedom")
+    pole, radius = circles[0]
+    way = on_unit_sphere(tuple(x - sum(map(mul, to, pole)) * y for x, y in zip(to, pole, strict=True)))
+    if way is None:
+        return sketch.places[point], _("what is locked leaves this joint no freedom")
+    allowed = tuple(math.cos(radius) * y + math.sin(radius) * x for x, y in zip(way, pole, strict=True))
+    return allowed, _("the joint stays on its guide") if guided else _("the locked length holds")
 
 
 def on_line(through: Vector, direction: float, to: Vector) -> Vector:
@@ -332,6 +388,8 @@ def _nearest_of(places: list[Vector], to: Vector, present: Vector) -> tuple[Vect
 def moved_with(sketch: Sketch, point: str, place: Vector) -> dict[str, Vector]:
     """The joint at its new place, and points on the line of two joints of a link, which keep their ratio on it."""
     moved = {point: place}
+    if sketch.on_sphere:
+        return moved
     for name in sketch.owners(point):
         points = sketch.links[name]
         joints = [
@@ -375,12 +433,7 @@ def reshaping_assignments(
         )
 
     def pair(place: Place, value: Vector) -> Iterator[Assignment]:
-        old = value_at_place(sketch.tables, place)
-        if isinstance(old, list) and len(old) == 2:
-            for axis in range(2):
-                yield written((*place, axis), value[axis], "length")
-        else:
-            yield place, [written_quantity(sketch, None, x, "length", exactly=exactly) for x in value[:2]]
+        yield from written_place(sketch, place, value, exactly=exactly)
 
     for point in moved:
         if sketch.is_short_form and point in sketch.tables["points"]:
@@ -391,6 +444,8 @@ def reshaping_assignments(
             within: Place = ("frame", "points", point)
             within = (*within, "placed") if isinstance(old, Mapping) else within
             yield from pair(within, places[point])
+    if sketch.on_sphere:
+        return  # what a link needs follows from its points
     turned: dict[str, float] = {}
     for name, points in sketch.links.items():
         if len(points) < 2 or not any(point in moved for point in points):
@@ -420,6 +475,20 @@ def reshaping_assignments(
         if link.get("angle") is not None:
             yield written(("links", name, "angle"), turned[name], "angle")
     yield from _starts(sketch, places, turned, moved, written)
+
+
+def written_place(
+    sketch: Sketch, place: Place, value: Vector, *, exactly: bool = False
+) -> Iterator[Assignment]:
+    """Coordinates at a place of the text as the file writes them: on the sphere longitude and latitude."""
+    old = value_at_place(sketch.tables, place)
+    kind, numbers = ("angle" if sketch.on_sphere else "length"), sketch.numbers_of(value)
+    if isinstance(old, list) and len(old) == 2:
+        for axis, number_at_axis in enumerate(numbers):
+            key: Place = (*place, axis)
+            yield key, written_quantity(sketch, old[axis], number_at_axis, kind, exactly=exactly)
+    else:
+        yield place, [written_quantity(sketch, None, x, kind, exactly=exactly) for x in numbers]
 
 
 def _starts(

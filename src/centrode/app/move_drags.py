@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from centrode.app.documents import Document
-from centrode.app.sketch import Vector
-from centrode.errors import InputError, Status
+from centrode.app.sketch import Sketch, Vector
+from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.path import even_grid
 from centrode.kinematics.preparation import Ready
@@ -22,6 +23,7 @@ from centrode.kinematics.solve import SEARCH, TURNS, fit_for, requested_grid
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import shown_as
+from centrode.scenes.driving_cams import driving_cams
 
 Array = npt.NDArray[np.float64]
 
@@ -118,6 +120,15 @@ def _kept_way(key: _ById) -> Way:
     points, slopes, bends = np.moveaxis(moving, 3, 1)
     reached = np.isfinite(points).all(axis=(1, 2)) & (samples.status[0] != Status.CUT_OFF)
     return Way(fitted, on_path, grid.parameter, points, slopes, bends, reached, closes, tuple(layout.points))
+
+
+def move_refusal(sketch: Sketch, name: str) -> str:
+    """Why a point cannot be dragged to move the mechanism; empty where it can."""
+    if name in sketch.fixed:
+        return _("a point of the frame does not move")
+    if sketch.document.position is None:
+        return _("the mechanism cannot move yet")
+    return ""
 
 
 def place_on_way(way: Way, point: str, to: Array, present: float | None) -> float:
@@ -245,4 +256,32 @@ def motion_answer(mechanism: Mechanism, samples: int | None) -> tuple[dict[str, 
     ):
         if key in data:
             arrays[name] = data[key].to_numpy()
+    header["cams"] = _add_cams(mechanism, data, arrays)
     return header, arrays
+
+
+def _add_cams(mechanism: Mechanism, data: xr.Dataset, arrays: dict[str, Any]) -> list[dict[str, Any]]:
+    """Cams that drive, as they stand at the first sample, and what follows each of them at every sample."""
+    try:
+        cams = driving_cams(mechanism, data, 1.0)
+    except CentrodeError:
+        return []
+    found = []
+    for k, cam in enumerate(cams):
+        samples = range(len(cam.angles))
+        rollers = [cam.roller(sample) for sample in samples]
+        lines = [np.array(cam.lines(sample)).reshape(-1) for sample in samples]
+        turned = cam.angles - cam.angles[0]
+        arrays[f"cam_turns_{k}"] = turned if cam.forward else -turned
+        arrays[f"cam_lines_{k}"] = np.array(lines)
+        if rollers[0] is not None:
+            arrays[f"cam_rollers_{k}"] = np.array([roller[0] for roller in rollers if roller is not None])
+        found.append(
+            {
+                "centre": cam.hub.tolist(),
+                "outline": cam.outline(0).tolist(),
+                "mark": cam.mark(0).tolist(),
+                "roller": None if rollers[0] is None else rollers[0][1],
+            }
+        )
+    return found

@@ -115,7 +115,8 @@ def topics_of(document: Document) -> dict[str, bool | str]:
     for topic in shown_topics():
         if (topic.subject == "cam") != document.is_cam:
             continue
-        if description is None or (not document.is_cam and document.prepared is None):
+        takes_free = topic.panel is not None and topic.panel.free and document.free is not None
+        if description is None or not (document.is_cam or document.prepared or takes_free):
             found[topic.name] = _("the mechanism cannot move yet")
         else:
             found[topic.name] = _concern(topic, description)
@@ -162,7 +163,7 @@ def panel_of(document: Document, name: object, options: object, samples: object)
 def topic_sheet(document: Document, topic: Topic, options: object, samples: object) -> tuple[Any, Described]:
     """The sheet of a topic of a description, and this; raises CentrodeError where there is none."""
     description: Described = document.cam if document.cam is not None else document.require_mechanism()
-    if isinstance(description, Mechanism):
+    if isinstance(description, Mechanism) and document.free is None:
         document.require_prepared()
     reason = topics_of(document).get(topic.name, _(CONCERNS_NOTHING))
     if reason is not True:
@@ -177,7 +178,7 @@ def topic_sheet(document: Document, topic: Topic, options: object, samples: obje
 def _arguments(topic: Topic, description: Described, options: object, samples: object) -> dict[str, Any]:
     """Arguments of the computation of a topic, from what a message holds."""
     command = topic.command
-    given = dict(_given(command, options, description)) if command is not None else {}
+    given = dict(_given_options(command, options, description)) if command is not None else {}
     arguments = option_arguments(command, description, given) if command is not None else {}
     arguments = {**dict(topic.document.arguments), **arguments} if command is None else arguments
     if topic.panel is not None:
@@ -201,7 +202,7 @@ def _instants_key(command: Command) -> str:
     return ""
 
 
-def _given(command: Command, options: object, description: Described) -> Iterator[tuple[str, Any]]:
+def _given_options(command: Command, options: object, description: Described) -> Iterator[tuple[str, Any]]:
     """Options of a message that are options of the command, each of its kind."""
     table: Mapping[Any, Any] = options if isinstance(options, Mapping) else {}
     for option in command.options:

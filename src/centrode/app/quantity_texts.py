@@ -6,12 +6,14 @@ import math
 import re
 from typing import Any
 
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import Sketch, display_units
+from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
-from centrode.locale import _
-from centrode.model.units import scaled, to_si, unit_factor
-from centrode.quantities import ANGLES, LENGTHS
+from centrode.locale import _, decimal_mark
+from centrode.model.units import number_and_unit, scaled, to_si, unit_factor
 
+FIELD_DIGITS = 6
+"""Digits of a number in a field."""
 DIGITS = 5
 """Decimal digits behind the leading one of the mechanism's extent: a hundred-thousandth of it."""
 ANGLE_DECIMALS = {"deg": 4, "°": 4, "turn": 7}
@@ -31,49 +33,46 @@ def written_quantity(sketch: Sketch, old: Any, value: float, kind: str, *, exact
     if unit is None and (not bare or (kind == "angle" and _displays_other_angles(sketch))):
         unit = _usual_unit(sketch, kind)
     if unit is None:
-        return value if exactly else rounded(value, _decimals(sketch, kind, "", 1.0))
+        return value if exactly else with_decimals(value, _decimals(sketch, kind, "", 1.0))
     try:
         factor = unit_factor(unit, kind)
     except InputError:
         unit, factor = ("rad", 1.0) if kind == "angle" else ("m", 1.0)
     number = value / factor
     if not exactly:
-        number = rounded(number, _decimals(sketch, kind, unit, factor))
-    return f"{plain(number)} {unit}"
+        number = with_decimals(number, _decimals(sketch, kind, unit, factor))
+    return f"{spelled_value(number)} {unit}"
 
 
-def plain(number: float) -> str:
-    """A number without a superfluous point."""
-    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+def field_text(value: float) -> str:
+    """A number as a field shows it: to be typed over, so without powers of print or spaces."""
+    return f"{value:.{FIELD_DIGITS}g}".replace(".", decimal_mark())
 
 
-def rounded(value: float, decimals: int) -> float:
+def with_decimals(value: float, decimals: int) -> float:
     """A number with so many decimals; no negative zero."""
     return round(value, decimals) + 0.0
 
 
 def _unit_of(text: str) -> str | None:
-    number = _NUMBER.match(text)
-    unit = text[number.end() :].strip() if number else ""
-    if not unit:
-        found = _UNIT.search(text)
-        unit = found.group().strip() if found and not number else ""
-    return unit or None
+    found = number_and_unit(text)
+    if found is not None:
+        return found[1].strip() or None
+    named = _UNIT.search(text)  # of a formula such as "pi/12 rad"
+    return named.group().strip() if named else None
 
 
 def _usual_unit(sketch: Sketch, kind: str) -> str | None:
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
+    units = display_units(sketch.tables)
     if kind == "angle":
-        unit = display.get("angle", "rad")
-        return unit if unit in ANGLES and unit != "rad" else "deg"
-    length = display.get("length", "m")
-    return length if kind == "length" and length in LENGTHS and length != "m" else None
+        unit = str(units["angle"]["unit"])
+        return unit if unit != "rad" else "deg"
+    length = str(units["length"]["unit"])
+    return length if kind == "length" and length != "m" else None
 
 
 def _displays_other_angles(sketch: Sketch) -> bool:
-    display = sketch.tables.get("display")
-    return isinstance(display, dict) and display.get("angle", "rad") != "rad"
+    return bool(display_units(sketch.tables)["angle"]["unit"] != "rad")
 
 
 def _decimals(sketch: Sketch, kind: str, unit: str, factor: float) -> int:
@@ -89,17 +88,17 @@ def read_field(sketch: Sketch, text: object, kind: str) -> float:
         return to_si(text, kind)
     if not isinstance(text, str):
         raise InputError("", _("a number is needed"), "")
-    typed = text.strip().replace(",", ".") if _NUMBER.match(text) else text.strip()
-    bare = _NUMBER.fullmatch(typed)
-    if not bare:
+    typed = with_decimal_point(text.strip())
+    if not is_number(typed):
         return to_si(typed, kind)
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    unit = {"length": display.get("length", "m"), "angle": display.get("angle", "rad")}.get(kind)
-    if unit in LENGTHS or unit in ANGLES:
-        factor = {**LENGTHS, **ANGLES}[str(unit)]
-        return scaled(to_si(float(typed), kind), 1.0 / factor)
-    return to_si(float(typed), kind)
+    factor = display_units(sketch.tables).get(kind, {}).get("factor", 1.0)
+    return scaled(to_si(float(typed), kind), 1.0 / factor)
+
+
+def with_decimal_point(text: str) -> str:
+    """A text whose number has a point where somebody has typed a comma."""
+    found = _NUMBER.match(text)
+    return found.group().replace(",", ".") + text[found.end() :] if found else text
 
 
 def is_number(text: str) -> bool:
@@ -114,13 +113,11 @@ def typed_quantity(sketch: Sketch, old: Any, typed: object, value: float, kind: 
     """
     if isinstance(typed, str) and not is_number(typed):
         return typed.strip()
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    unit = {"length": display.get("length", "m"), "angle": display.get("angle", "rad")}.get(kind)
+    unit = display_units(sketch.tables).get(kind, {}).get("unit")
     number = float(typed.replace(",", ".")) if isinstance(typed, str) else None
     known = _unit_of(old) if isinstance(old, str) else None
     if number is not None and unit not in (None, "m", "rad") and (old is None or known == unit):
-        return f"{plain(number)} {unit}"
+        return f"{spelled_value(number)} {unit}"
     if known is None and unit in (None, "m", "rad"):
         return value
     return written_quantity(sketch, old, value, kind, exactly=True)

@@ -33,7 +33,7 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
     if not sketch.links:
         answer["missing"].append(_("draw a link: press at one joint, release at the other"))
         return answer
-    answer["loose"] = loose_points(sketch)
+    answer["loose"] = sketch.loose_points()
     if document.prepared is None:
         answer["missing"] += _missing(sketch)
         return answer
@@ -48,20 +48,6 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
     ]
     answer["limit"] = _limit(sketch)
     return answer
-
-
-def loose_points(sketch: Sketch) -> list[str]:
-    """Points at which a link of which something else would have to hold the end hangs on nothing."""
-    loose = []
-    for points in sketch.links.values():
-        joined = [
-            one
-            for one in points
-            if len(sketch.owners(one)) > 1 or one in sketch.fixed or sketch.guides_of(one)
-        ]
-        if len(joined) < 2 and len(points) > 1:
-            loose += [one for one in points if one not in joined]
-    return list(dict.fromkeys(loose))
 
 
 def _missing(sketch: Sketch) -> list[str]:

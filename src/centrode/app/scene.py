@@ -3,46 +3,52 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from centrode.app.dimensions import dimension_rows
-from centrode.app.sketch import Sketch, Vector, coordinates, list_of_tables, number
+from centrode.app.edit_drags import edit_refusal
+from centrode.app.move_drags import move_refusal
+from centrode.app.sketch import (
+    Sketch,
+    coordinates,
+    direction_angle,
+    display_units,
+    drive_name,
+    guide_circle,
+    guide_line,
+    guide_name,
+    list_of_tables,
+    load_name,
+    number,
+    on_unit_sphere,
+)
+from centrode.app.state_rows import rows_of
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
+from centrode.model.links import Gear
 from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME
-from centrode.quantities import ANGLES, LENGTHS
 
+COAXIAL = 1e-9
+"""Shafts nearer than this share of the extent are one: no pitch circles tell their ratio."""
 MARGIN = 0.1
 """Room around a drawing, as a part of its extent."""
-FORCE = 100.0
-"""Size of a load [N] that a row adds."""
 
 
 def scene_of(sketch: Sketch) -> dict[str, Any]:
     """The scene of a mechanism, whether it can move or not."""
-    display = sketch.tables.get("display")
-    display = display if isinstance(display, dict) else {}
-    length, angle = display.get("length", "m"), display.get("angle", "rad")
     return {
         "title": _text(sketch.tables.get("title")),
         "kind": "sphere" if sketch.on_sphere else "plane",
-        "unit": length if length in LENGTHS else "m",
-        "display": {
-            "length": {"unit": length, "factor": LENGTHS.get(length, 1.0)},
-            "angle": {"unit": angle, "factor": ANGLES.get(angle, 1.0)},
-        },
+        "draws": sketch.draws_points or not sketch.on_sphere,
+        "display": display_units(sketch.tables),
         "size": _box(sketch),
         "points": [_point(sketch, name) for name in sketch.points],
         "links": [_link(sketch, k, name) for k, name in enumerate(sketch.links)],
         "guides": list(_guides(sketch)),
         "drives": list(_drives(sketch)),
         "wheels": list(_wheels(sketch)),
-        "gears": [
-            {"links": list(gear.get("links", ())), "carrier": gear.get("carrier", FRAME)}
-            for gear in list_of_tables(sketch.tables, "gears")
-        ],
         "cylinders": [list(drive["distance"]) for drive in sketch.drives if drive.get("distance")],
         "loads": list(_loads(sketch)),
         "rows": rows_of(sketch),
@@ -81,30 +87,6 @@ def _point(sketch: Sketch, name: str) -> dict[str, Any]:
     }
 
 
-def edit_refusal(sketch: Sketch, name: str) -> str:
-    """Why a point cannot be dragged to change lengths; empty where it can."""
-    if sketch.on_sphere:
-        return _("on the sphere lengths and angles are changed in the text or in the fields")
-    if name in sketch.marks["fixed"]:
-        return _("this joint is held: switch Fixed off to drag it")
-    if name not in sketch.places:
-        return _("its place is not known: correct the description first")
-    wheels = list_of_tables(sketch.tables, "rolling")
-    turned = {wheel.get("centre") for wheel in wheels}
-    if name in turned:
-        return _("the centre of a rolling wheel follows from its track: change the radii in the text")
-    return ""
-
-
-def move_refusal(sketch: Sketch, name: str) -> str:
-    """Why a point cannot be dragged to move the mechanism; empty where it can."""
-    if name in sketch.fixed:
-        return _("a point of the frame does not move")
-    if sketch.document.prepared is None:
-        return _("the mechanism cannot move yet")
-    return ""
-
-
 def _link(sketch: Sketch, index: int, name: str) -> dict[str, Any]:
     points, path = sketch.links[name], f"links.{name}.length"
     length = sketch.length(name)
@@ -123,11 +105,6 @@ def _link(sketch: Sketch, index: int, name: str) -> dict[str, Any]:
     }
 
 
-def guide_name(sketch: Sketch, number_of_guide: int) -> str:
-    """How the workbench names a guide: not as its point, which is an object of its own."""
-    return f"guide {number_of_guide + 1}"
-
-
 def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
     for k, guide in enumerate(sketch.guides):
         through, direction = guide_line(sketch, k)
@@ -138,49 +115,23 @@ def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
             "on": guide.get("on", FRAME),
             "through": None if through is None else list(through),
             "direction": direction,
+            "circle": _circle(sketch, k),
             "link": guide.get("link"),
             "slider": not guide.get("link"),
             "drive": bool(sketch.drives_of(str(guide.get("name", point)))),
         }
 
 
-def guide_line(sketch: Sketch, number_of_guide: int) -> tuple[Vector | None, float | None]:
-    """A place on the line of a guide [m] and its angle [rad], both in the axes of the frame."""
-    guide = sketch.guides[number_of_guide]
-    on, point = guide.get("on", FRAME), str(guide.get("point"))
-    direction = direction_angle(guide.get("direction"))
-    given = guide.get("through")
-    here = sketch.places.get(point)
-    if on == FRAME:
-        through = sketch.places.get(given) if isinstance(given, str) else coordinates(given)
-        return (here if through is None else through), direction
-    if on not in sketch.poses:
-        return here, None
-    origin, angle = sketch.poses[on]
-    turned = None if direction is None else direction + angle
-    if isinstance(given, str):
-        return sketch.places.get(given, here), turned
-    local = coordinates(given)
-    if local is None:
-        return here, turned
-    x, y = rotate_vector(local, angle)
-    return (origin[0] + x, origin[1] + y), turned
-
-
-def direction_angle(value: object) -> float | None:
-    """Angle [rad] of a direction that is given as [x, y] or as an angle."""
-    if isinstance(value, list):
-        place = coordinates(value)
-        return None if place is None else math.atan2(place[1], place[0])
-    return number(value, "angle")
+def _circle(sketch: Sketch, number_of_guide: int) -> dict[str, Any] | None:
+    """The circle of a guide on the sphere."""
+    circle = guide_circle(sketch, number_of_guide) if sketch.on_sphere else None
+    return None if circle is None else {"pole": list(circle[0]), "radius": circle[1]}
 
 
 def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
-    prepared = sketch.document.prepared
+    prepared = sketch.document.position
     for drive in sketch.drives:
-        name = next((drive[key] for key in ("link", "guide") if isinstance(drive.get(key), str)), "")
-        points = drive.get("distance")
-        name = name or "-".join(points or ())
+        name, points = drive_name(drive), drive.get("distance")
         coordinate = coordinate_of_drive(drive, sketch.space)
         start = None if prepared is None else prepared.assembled.positions.drives.get(name)
         yield {
@@ -199,15 +150,68 @@ def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
 
 
 def _wheels(sketch: Sketch) -> Iterator[dict[str, Any]]:
+    """Rolling wheels with what they roll on, and pitch circles of meshing ones, which touch where they mesh."""
     for wheel in list_of_tables(sketch.tables, "rolling"):
         along = wheel.get("along")
         yield {
             "link": wheel.get("link"),
             "centre": wheel.get("centre"),
             "radius": number(wheel.get("radius"), "length"),
-            "on": wheel.get("on", FRAME),
-            "track": number(along.get("radius"), "length") if isinstance(along, dict) else None,
+            "pitch": False,
+            "track": _track(sketch, wheel, along) if isinstance(along, Mapping) else None,
         }
+    mechanism = sketch.document.mechanism
+    for gear in () if mechanism is None else mechanism.gears:
+        yield from _pitch_circles(sketch, gear)
+
+
+def _track(sketch: Sketch, wheel: Mapping[str, Any], along: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The circle or the line that a wheel rolls on, where it lies in the initial position."""
+    on = str(wheel.get("on", FRAME))
+    pose = ((0.0, 0.0), 0.0) if on == FRAME else sketch.poses.get(on)
+    given = along.get("centre", along.get("through"))
+    local = coordinates(given)
+    place = sketch.places.get(given) if isinstance(given, str) else None
+    if pose is None or (local is None and place is None):
+        return None
+    (x, y), angle = pose[0][:2], pose[1]
+    if place is None and local is not None:
+        u, v = rotate_vector(local, angle)
+        place = (x + u, y + v)
+    direction = direction_angle(along.get("direction"))
+    return {
+        "on": on,
+        "at": list(place or ()),
+        "radius": number(along.get("radius"), "length"),
+        "direction": None if direction is None else direction + angle,
+    }
+
+
+def _pitch_circles(sketch: Sketch, gear: Gear) -> Iterator[dict[str, Any]]:
+    """Each wheel of a gear by the point in which it turns on the carrier; none where both turn about one axis."""
+    held = sketch.fixed if gear.carrier == FRAME else sketch.links.get(gear.carrier, ())
+    of_links = [sketch.fixed if link == FRAME else sketch.links.get(link, ()) for link in gear.links]
+    shafts = [next((point for point in points if point in held), "") for points in of_links]
+    places = [sketch.places[shaft] for shaft in shafts if shaft in sketch.places]
+    if len(places) < len(shafts):
+        return
+    distance = sketch.distance(places[0], places[1])
+    if distance < COAXIAL * sketch.size:
+        return
+    if sketch.on_sphere:
+        # the wheels touch along the axis about which they roll
+        contact = on_unit_sphere(tuple(x - gear.ratio * y for x, y in zip(*places, strict=True)))
+        if contact is None:
+            return
+        radii = [sketch.distance(place, contact) for place in places]
+        if radii[1] > math.pi / 2:
+            # an axis pierces the sphere twice: they mesh at the place on the side of the second wheel
+            radii = [math.pi - radius for radius in radii]
+    else:
+        second = distance / abs(gear.ratio - 1.0)
+        radii = [abs(gear.ratio) * second, second]
+    for link, shaft, radius in zip(gear.links, shafts, radii, strict=True):
+        yield {"link": link, "centre": shaft, "radius": radius, "pitch": True, "track": None}
 
 
 def _loads(sketch: Sketch) -> Iterator[dict[str, Any]]:
@@ -221,120 +225,3 @@ def _loads(sketch: Sketch) -> Iterator[dict[str, Any]]:
             "points": load.get("points"),
             "vector": [number(x, "force") for x in vector] if isinstance(vector, list) else None,
         }
-
-
-def load_name(number_of_load: int) -> str:
-    """How the workbench names a load."""
-    return f"load {number_of_load + 1}"
-
-
-# What each object may be made into.
-
-
-def rows_of(sketch: Sketch) -> dict[str, dict[str, dict[str, Any]]]:
-    """State rows of every object: whether each is on, whether it may be switched, and why not."""
-    rows = {name: _rows_of_point(sketch, name) for name in sketch.points}
-    rows |= {name: _rows_of_link(sketch, name) for name in sketch.links if name not in rows}
-    rows |= {guide_name(sketch, k): _rows_of_guide(sketch, k) for k in range(len(sketch.guides))}
-    return rows
-
-
-def _row(on: bool, why: str = "", **more: Any) -> dict[str, Any]:
-    return {"on": on, "allowed": not why, "why": why, **more}
-
-
-def _sphere_words(sketch: Sketch) -> str:
-    return _("on the sphere this is changed in the text") if sketch.on_sphere else ""
-
-
-def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
-    sphere = _sphere_words(sketch)
-    fixed, guided = name in sketch.fixed, bool(sketch.guides_of(name))
-    unplaced = "" if name in sketch.places else _("its place is not known: correct the description first")
-    of_guide = [k for k in sketch.guides_of(name) if sketch.guides[k].get("on", FRAME) == FRAME]
-    driven = guided and bool(sketch.drives_of(_guide_id(sketch, sketch.guides_of(name)[0])))
-    loads = [one for one in list_of_tables(sketch.tables, "loads") if one.get("point") == name]
-    value = next(
-        (number_list(one.get("vector"), "force") for one in loads if one.get("kind") == "force"), None
-    )
-    ground = sphere or unplaced
-    if not ground and not fixed and guided:
-        ground = _("this point slides in a guide: remove the guide first")
-    if not ground and fixed and not sketch.owners(name):
-        ground = _("no link has this point: delete it instead")
-    slide = sphere or unplaced
-    if not slide and not guided and fixed:
-        slide = _("a point of the frame does not slide: switch Ground off first")
-    direction = guide_line(sketch, of_guide[0])[1] if of_guide else None
-    return {
-        "ground": _row(fixed, ground),
-        "guide": _row(guided, slide, value=direction),
-        "drive": _row(driven, sphere or ("" if guided else _("only a link or a sliding point is driven"))),
-        "fixed": _row(name in sketch.marks["fixed"], sphere),
-        "trace": _row(name in sketch.marks["traced"], _("a point of the frame has no path") if fixed else ""),
-        "mass": _row(False, _("masses belong to links: select one")),
-        "load": _row(
-            bool(loads),
-            sphere or (_("a force on the frame does no work") if fixed else ""),
-            value=value,
-            unit="N",
-        ),
-    }
-
-
-def number_list(value: object, kind: str) -> list[float | None] | None:
-    """Numbers in SI of a list."""
-    return [number(one, kind) for one in value] if isinstance(value, list) else None
-
-
-def _guide_id(sketch: Sketch, k: int) -> str:
-    guide = sketch.guides[k]
-    return str(guide.get("name", guide.get("point")))
-
-
-def _rows_of_link(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
-    sphere = _sphere_words(sketch)
-    driven = sketch.drives_of(name)
-    link = sketch.tables["links"][name]
-    mass = number(link.get("mass"), "mass")
-    path = f"links.{name}.length"
-    pivots = [point for point in sketch.links[name] if point in sketch.fixed]
-    loose = [point for point in sketch.links[name] if len(sketch.owners(point)) < 2]
-    drive = ""
-    if not driven and not pivots and not loose:
-        drive = _("a driven link turns about a point of the frame: switch Ground on at one of its joints")
-    length = sketch.length(name)
-    no_point = _("this belongs to points: select one")
-    return {
-        "ground": _row(False, no_point),
-        "guide": _row(False, no_point),
-        "drive": _row(
-            bool(driven),
-            sphere or drive,
-            value=number(sketch.drives[driven[0]].get("speed"), "angular speed") if driven else None,
-            unit="rad/s",
-        ),
-        "fixed": _row(
-            path in sketch.marks["locked"],
-            "" if length is not None else _("only a link of two points has a length to lock"),
-        ),
-        "trace": _row(False, no_point),
-        "mass": _row(mass is not None or bool(link.get("masses")), sphere, value=mass, unit="kg"),
-        "load": _row(False, no_point),
-    }
-
-
-def _rows_of_guide(sketch: Sketch, k: int) -> dict[str, dict[str, Any]]:
-    sphere, only = _sphere_words(sketch), _("this belongs to points and links: select one")
-    driven = sketch.drives_of(_guide_id(sketch, k))
-    rows = {row: _row(False, only) for row in ("ground", "fixed", "trace", "mass", "load")}
-    return {
-        **rows,
-        "guide": _row(True, sphere, value=guide_line(sketch, k)[1]),
-        "drive": _row(
-            bool(driven),
-            sphere,
-            value=number(sketch.drives[driven[0]].get("speed"), "speed") if driven else None,
-            unit="m/s",
-        ),
-    }

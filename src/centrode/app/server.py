@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import html
 import json
 import secrets
+import time
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +16,7 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, Request
-from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -42,6 +44,10 @@ REFUSED = (
     mark("To read a link to a description, paste it into the workbench under Open."),
 )
 """What is wrong, and its repair."""
+CODE_SECONDS = 120.0
+"""So long a browser that the command starts has to bring its code: the first start of one may take a minute."""
+GIVEN = '<meta name="workbench" content="">'
+"""Where the page finds what the server gives it."""
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
@@ -56,6 +62,29 @@ HEADERS = {
 }
 
 
+class OneTimeCodes:
+    """Codes that stand for the token once, and for a short time.
+
+    The address that starts a browser stands in its list of arguments, which every user of the machine can read. A code
+    there is worth nothing once the browser has brought it.
+    """
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._until: dict[str, float] = {}
+
+    def issue(self) -> str:
+        """Another code."""
+        code = secrets.token_urlsafe(24)
+        self._until[code] = self._now() + CODE_SECONDS
+        return code
+
+    def redeem(self, code: object) -> bool:
+        """Whether a code is good; it is not any more after this."""
+        until = self._until.pop(code, None) if isinstance(code, str) else None
+        return until is not None and self._now() <= until
+
+
 @dataclass(frozen=True)
 class ServerSettings:
     """What a server serves.
@@ -65,18 +94,27 @@ class ServerSettings:
     work : the folder and the file
     port : at which it listens
     token : that a page has to bring
+    codes : each of which brings a page the token, once
     """
 
     work: WorkFolder
     port: int
     token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
+    codes: OneTimeCodes = field(default_factory=OneTimeCodes, compare=False)
 
     @property
     def address(self) -> str:
-        """What a browser opens; it brings the chosen language where that is not English."""
+        """What a person opens; it brings the chosen language where that is not English."""
+        return self._address_with(f"token={self.token}")
+
+    def opening_address(self) -> str:
+        """What starts a browser: an address that is good once, since others may read it."""
+        return self._address_with(f"code={self.codes.issue()}")
+
+    def _address_with(self, credential: str) -> str:
         language = chosen_language()
-        asked = "" if language == "en" else f"&language={language}"
-        return f"http://127.0.0.1:{self.port}/?token={self.token}{asked}"
+        wished = "" if language == "en" else f"&language={language}"
+        return f"http://127.0.0.1:{self.port}/?{credential}{wished}"
 
     def is_own_host(self, host: str | None) -> bool:
         """Whether a request came by a name of this machine: another one may point here (DNS rebinding)."""
@@ -128,13 +166,16 @@ def server_application(
             lanes.end()
 
     async def index(request: Request) -> Response:
-        refused = _refusal(settings, request, request.query_params.get("token"))
-        if refused is not None:
-            said = _spoken_error(REFUSED, _preferred_language(request))
-            return PlainTextResponse("\n".join(said.values()), refused.status_code, HEADERS)
-        if not (STATIC / "index.html").is_file():
-            return PlainTextResponse("the page is not built", 500, HEADERS)
-        return FileResponse(STATIC / "index.html", headers=HEADERS)
+        said = "\n".join(_spoken_error(REFUSED, _preferred_language(request)).values())
+        token, code = (request.query_params.get(key) for key in ("token", "code"))
+        if not _is_own_request(settings, request):
+            return PlainTextResponse(said, 403, HEADERS)
+        allowed = settings.has_token(token) if code is None else settings.codes.redeem(code)
+        if not allowed and (token is not None or code is not None):
+            return PlainTextResponse(said, 403, HEADERS)
+        # a window that is loaded again has kept the token, and its address does not hold it
+        given = {"token": settings.token} if allowed else {"refused": said}
+        return _page_with(given)
 
     async def export(request: Request) -> Response:
         if not settings.is_own_origin(request.headers.get("origin")):
@@ -203,14 +244,27 @@ class _OwnFiles(StaticFiles):
         return response
 
 
+def _page_with(given: Mapping[str, str]) -> Response:
+    """The page with what the server gives it."""
+    try:
+        page = (STATIC / "index.html").read_text("utf-8")
+    except OSError:
+        return PlainTextResponse("the page is not built", 500, HEADERS)
+    content = html.escape(json.dumps(given, ensure_ascii=False))
+    return HTMLResponse(page.replace(GIVEN, GIVEN.replace('""', f'"{content}"')), headers=HEADERS)
+
+
+def _is_own_request(settings: ServerSettings, request: Request) -> bool:
+    """Whether a request came by a name of this machine, and from no page of another one."""
+    origin = request.headers.get("origin")
+    own = origin is None or settings.is_own_origin(origin)
+    return own and settings.is_own_host(request.headers.get("host"))
+
+
 def _refusal(settings: ServerSettings, request: Request, token: object) -> Response | None:
     """The answer to a request that is not allowed; None to one that is."""
-    origin = request.headers.get("origin")
-    if not settings.is_own_host(request.headers.get("host")):
-        return _refuse(403)
-    if origin is not None and not settings.is_own_origin(origin):
-        return _refuse(403)
-    return None if settings.has_token(token) else _refuse(403)
+    allowed = _is_own_request(settings, request) and settings.has_token(token)
+    return None if allowed else _refuse(403)
 
 
 def _refuse(status: int) -> Response:

@@ -80,7 +80,7 @@ def run_server(settings: ServerSettings, listener: socket.socket, *, browser: bo
         timeout_graceful_shutdown=1,
     )
     if browser:
-        opening = threading.Timer(0.5, webbrowser.open, (settings.address,))
+        opening = threading.Timer(0.5, webbrowser.open, (settings.opening_address(),))
         opening.daemon = True  # none opens once the server has ended
         opening.start()
     # interrupting it is how it ends, even before it has begun to wait for that

@@ -14,6 +14,8 @@ from centrode.errors import InputError
 from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME, two_points
 from centrode.model.units import to_si
+from centrode.model.values import arc, longitude_latitude, unit_vector
+from centrode.quantities import ANGLES, LENGTHS
 
 Vector: TypeAlias = tuple[float, ...]
 Pose: TypeAlias = tuple[Vector, float]
@@ -49,6 +51,11 @@ class Sketch:
     def is_short_form(self) -> bool:
         """Whether points have coordinates in the initial position, from which links follow."""
         return isinstance(self.tables.get("points"), Mapping)
+
+    @property
+    def draws_points(self) -> bool:
+        """Whether what is drawn gets coordinates in the table of points: in a new text, and where others have them."""
+        return self.is_short_form or not (self.links or self.fixed)
 
     @cached_property
     def fixed(self) -> tuple[str, ...]:
@@ -90,6 +97,17 @@ class Sketch:
         """Moving links that have a point."""
         return [name for name, points in self.links.items() if point in points]
 
+    def loose_points(self) -> list[str]:
+        """Points at which a link of which something else would have to hold the end hangs on nothing."""
+        loose = []
+        for points in self.links.values():
+            joined = [
+                one for one in points if len(self.owners(one)) > 1 or one in self.fixed or self.guides_of(one)
+            ]
+            if len(joined) < 2 and len(points) > 1:
+                loose += [one for one in points if one not in joined]
+        return list(dict.fromkeys(loose))
+
     def guides_of(self, point: str) -> list[int]:
         """Numbers of the guides of a point."""
         return [k for k, guide in enumerate(self.guides) if guide.get("point") == point]
@@ -107,12 +125,12 @@ class Sketch:
 
     @cached_property
     def _standing(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
-        prepared = self.document.prepared
+        prepared = self.document.position
         if prepared is not None:
             at = prepared.assembled.positions
             points = {name: tuple(map(float, place)) for name, place in at.points.items()}
             for name, value in _table(self.tables, "points").items():
-                place = coordinates(value)
+                place = self.place_of(value)
                 if name not in points and place is not None:
                     points[name] = place
             if self.on_sphere:
@@ -123,7 +141,7 @@ class Sketch:
                 if name != FRAME
             }
             return points, poses
-        return ({}, {}) if self.on_sphere else self._chain()
+        return (self._given_places(), {}) if self.on_sphere else self._chain()
 
     @property
     def places(self) -> dict[str, Vector]:
@@ -135,15 +153,24 @@ class Sketch:
         """Origin [m] and angle [rad] of the axes of each link in the initial position, as far as they are known."""
         return self._standing[1]
 
-    def _chain(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
-        """Places from coordinates, and along links whose angles are given."""
+    def place_of(self, value: object) -> Vector | None:
+        """The place that coordinates give: in the plane [m], on the sphere a unit vector; None of what are none."""
+        return unit_vector_of(value) if self.on_sphere else coordinates(value)
+
+    def _given_places(self) -> dict[str, Vector]:
+        """Places of points with coordinates."""
         places: dict[str, Vector] = {}
         for table in (self.tables.get("points"), _table(self.tables, "frame").get("points")):
             if isinstance(table, Mapping):
                 for name, value in table.items():
-                    place = coordinates(value)
+                    place = self.place_of(value)
                     if place is not None:
                         places.setdefault(name, place)
+        return places
+
+    def _chain(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
+        """Places from coordinates, and along links whose angles are given."""
+        places = self._given_places()
         poses: dict[str, Pose] = {}
         waiting = [name for name in self.links if self.angle(name) is not None]
         while True:
@@ -200,16 +227,37 @@ class Sketch:
         return stated
 
     def length(self, name: str) -> float | None:
-        """Length of a link of two points [m]."""
+        """Length of a link of two points [m], on the sphere its arc [rad]."""
         points = self.links[name]
-        if len(points) != 2 or self.on_sphere:
+        if len(points) != 2:
             return None
-        stated = number(_table(self.tables, "links")[name].get("length"), "length")
+        stated = number(
+            _table(self.tables, "links")[name].get("length"), "arc" if self.on_sphere else "length"
+        )
         if stated is not None:
             return stated
         if self.is_short_form and all(point in self.places for point in points):
-            return math.dist(self.places[points[0]], self.places[points[1]])
+            return self.distance(self.places[points[0]], self.places[points[1]])
         return None
+
+    @property
+    def axes(self) -> tuple[str, str]:
+        """What a file calls the coordinates of a point."""
+        return ("longitude", "latitude") if self.on_sphere else ("x", "y")
+
+    def numbers_of(self, place: Vector) -> tuple[float, ...]:
+        """Coordinates of a place as a file has them: x, y [m], on the sphere longitude and latitude [rad]."""
+        if not self.on_sphere:
+            return place[:2]
+        x, y, z = place
+        return longitude_latitude((x, y, z))
+
+    def distance(self, one: Vector, other: Vector) -> float:
+        """Distance of two places [m], on the sphere the arc between them [rad]."""
+        if self.on_sphere:
+            (x, y, z), (u, v, w) = one, other
+            return arc((x, y, z), (u, v, w))
+        return math.dist(one, other)
 
     @property
     def size(self) -> float:
@@ -217,6 +265,88 @@ class Sketch:
         at = list(self.places.values())
         spans = [max(x) - min(x) for x in zip(*at, strict=True)] if at else []
         return max(spans, default=0.0) or 1.0
+
+
+def guide_name(sketch: Sketch, number_of_guide: int) -> str:
+    """How the workbench names a guide: not as its point, which is an object of its own."""
+    return f"guide {number_of_guide + 1}"
+
+
+def guide_line(sketch: Sketch, number_of_guide: int) -> tuple[Vector | None, float | None]:
+    """A place on the line of a guide [m] and its angle [rad], both in the axes of the frame."""
+    guide = sketch.guides[number_of_guide]
+    on, point = guide.get("on", FRAME), str(guide.get("point"))
+    direction = direction_angle(guide.get("direction"))
+    given = guide.get("through")
+    here = sketch.places.get(point)
+    if on == FRAME:
+        through = sketch.places.get(given) if isinstance(given, str) else coordinates(given)
+        return (here if through is None else through), direction
+    if on not in sketch.poses:
+        return here, None
+    origin, angle = sketch.poses[on]
+    turned = None if direction is None else direction + angle
+    if isinstance(given, str):
+        return sketch.places.get(given, here), turned
+    local = coordinates(given)
+    if local is None:
+        return here, turned
+    x, y = rotate_vector(local, angle)
+    return (origin[0] + x, origin[1] + y), turned
+
+
+def guide_circle(sketch: Sketch, number_of_guide: int) -> tuple[Vector, float] | None:
+    """Pole and radius [rad] of a guide of the frame on the sphere; None where they are not known."""
+    guide = sketch.guides[number_of_guide]
+    pole = guide.get("pole")
+    place = sketch.places.get(pole) if isinstance(pole, str) else unit_vector_of(pole)
+    on, position = guide.get("on", FRAME), sketch.document.position
+    if place is not None and on != FRAME and not isinstance(pole, str):
+        # coordinates in the axes of the link that carries it
+        pose = None if position is None else position.assembled.positions.poses.get(str(on))
+        vectors = [] if pose is None else [tuple(map(float, vector)) for vector in pose]
+        place = (
+            tuple(sum(x * axis[k] for x, axis in zip(place, vectors, strict=True)) for k in range(3))
+            if len(vectors) == 3
+            else None
+        )
+    if place is None:
+        return None
+    radius = number(guide.get("radius"), "arc")
+    point = sketch.places.get(str(guide.get("point")))
+    if radius is None and sketch.is_short_form and point is not None:
+        radius = sketch.distance(place, point)
+    return place, math.pi / 2 if radius is None else radius
+
+
+def direction_angle(value: object) -> float | None:
+    """Angle [rad] of a direction that is given as [x, y] or as an angle."""
+    if isinstance(value, list):
+        place = coordinates(value)
+        return None if place is None else math.atan2(place[1], place[0])
+    return number(value, "angle")
+
+
+def drive_name(drive: Mapping[str, Any]) -> str:
+    """How a drive is called: as its link, its guide, or both points of its distance."""
+    named = next((drive[key] for key in ("link", "guide") if isinstance(drive.get(key), str)), "")
+    return named or "-".join(entries_of(drive.get("distance")))
+
+
+def load_name(number_of_load: int) -> str:
+    """How the workbench names a load."""
+    return f"load {number_of_load + 1}"
+
+
+def display_units(tables: Tables) -> dict[str, dict[str, Any]]:
+    """Units in which lengths and angles are shown, with what SI is multiplied by."""
+    display = _table(tables, "display")
+    units = {}
+    for kind, known, usual in (("length", LENGTHS, "m"), ("angle", ANGLES, "rad")):
+        unit = display.get(kind, usual)
+        unit = unit if unit in known else usual
+        units[kind] = {"unit": unit, "factor": known[unit]}
+    return units
 
 
 def number(value: object, kind: str) -> float | None:
@@ -235,6 +365,25 @@ def coordinates(value: object) -> tuple[float, float] | None:
         return None
     x, y = (number(one, "length") for one in value)
     return None if x is None or y is None else (x, y)
+
+
+def unit_vector_of(value: object) -> Vector | None:
+    """Unit vector of [longitude, latitude] or [x, y, z]; None of what is none."""
+    if isinstance(value, Mapping):
+        value = value.get("placed")
+    if not isinstance(value, list) or len(value) not in (2, 3):
+        return None
+    numbers = [number(one, "arc" if len(value) == 2 else "ratio") for one in value]
+    known = tuple(one for one in numbers if one is not None)
+    if len(known) < len(value):
+        return None
+    return unit_vector(known) if len(known) == 2 else on_unit_sphere(known)
+
+
+def on_unit_sphere(place: Vector) -> Vector | None:
+    """The place on the unit sphere in a direction; None of the centre."""
+    size = math.hypot(*place)
+    return tuple(x / size for x in place) if size > 0.0 and math.isfinite(size) else None
 
 
 def entries_of(value: object) -> tuple[str, ...]:

@@ -96,6 +96,12 @@ class TextChanges:
         expected.setdefault(room, []).append(dict(entries))
         self._become(self._with_section((room,), f"[[{room}]]", entries, double=True), expected)
 
+    def insert_entry(self, room: str, number: int, entries: Mapping[str, Any]) -> None:
+        """Put an entry into a list of tables, behind one that is there: it gets this number."""
+        expected = copy.deepcopy(self.tables)
+        expected[room].insert(number, dict(entries))
+        self._become(self._with_entry(room, number, entries), expected)
+
     def rename_key(self, place: Place, name: str) -> None:
         """Give a key, or a table with all below it, another name in its place."""
         expected = copy.deepcopy(self.tables)
@@ -231,6 +237,19 @@ class TextChanges:
             return self._insert(end, self.newline + section)
         return self._insert(len(self.text), (self.newline if self.text.strip() else "") + section)
 
+    def _with_entry(self, room: str, number: int, entries: Mapping[str, Any]) -> str:
+        before = [
+            one for one in self._places.statements if one.is_heading and one.place[:2] == (room, number - 1)
+        ]
+        if before:
+            lines = [f"{spelled_key(key)} = {spelled_value(value)}" for key, value in entries.items()]
+            section = self.newline.join(["", f"[[{room}]]", *lines, ""])
+            return self._insert(self._places.section_end(before[-1]), section)
+        statement = self._statement((room,))
+        if statement is None:
+            return self.text
+        return self._within(statement, lambda inner: _insert_value(inner, number, entries))
+
     def _stand_close(self, same: Sequence[Statement]) -> bool:
         """Whether headings of one kind follow each other without a blank line."""
         pairs = [self.text[self._places.section_end(one) : other.start] for one, other in pairwise(same)]
@@ -361,6 +380,10 @@ def _add(inner: Any, rest: Place, key: str, value: Any) -> None:
     for part in rest:
         inner = inner[part]
     inner[key] = tomlkit.value(spelled_value(value))
+
+
+def _insert_value(inner: Any, number: int, value: Any) -> None:
+    inner.insert(number, tomlkit.value(spelled_value(value)))
 
 
 def _take(inner: Any, rest: Place) -> None:

@@ -228,12 +228,14 @@ def _inside(text: str, statement: Statement, rest: Place) -> int | None:
     offset = 0
     for part in rest:
         if isinstance(part, str):
-            at = min((k for k in (written.find(q, offset) for q in _written(part)) if k >= 0), default=-1)
+            at = min(
+                (k for k in (written.find(q, offset) for q in _key_spellings(part)) if k >= 0), default=-1
+            )
             if at < 0:
                 return statement.value + offset
             offset = at
     return statement.value + offset
 
 
-def _written(key: str) -> tuple[str, ...]:
+def _key_spellings(key: str) -> tuple[str, ...]:
     return f"{key} =", f"{key}=", f'"{key}"', f"'{key}'"

@@ -38,7 +38,9 @@ WORDS: Mapping[str, str] = {
     ),
     "mode_edit_hint": mark("Drag a joint to change the lengths of its links."),
     "mode_move_hint": mark("Drag a joint to move the mechanism."),
-    "not_on_sphere": mark("Spherical mechanisms are drawn in the text; here they can be moved."),
+    "not_on_sphere": mark(
+        "In this description links on the sphere have arcs and angles: change them in the text; here they can be moved."
+    ),
     "fit": mark("Show everything"),
     "zoom_in": mark("Zoom in"),
     "zoom_out": mark("Zoom out"),
@@ -51,6 +53,10 @@ WORDS: Mapping[str, str] = {
         "Drag here to draw the first link. Later switch Drive on at the link that drives, and "
         "Ground at joints that are at rest."
     ),
+    "empty_sphere": mark(
+        "Drag here to draw the first link on the sphere. In Move a drag beside the linkage turns the globe."
+    ),
+    "draw_on_sphere": mark("Draw on the sphere"),
     "held_point": mark("{name} cannot be dragged here."),
     "line_begun": mark(
         "The line begins here. Move with the arrow keys or go to a joint with Tab, then press Enter."
@@ -124,6 +130,10 @@ WORDS: Mapping[str, str] = {
     "segment_angle": mark("Angle"),
     "segment_to": mark("Ends at"),
     "segment_law": mark("Curve"),
+    "segment_share": mark("Share of a turn"),
+    "segment_time": mark("Time"),
+    "segment_add": mark("Add a segment behind segment {number}"),
+    "segment_delete": mark("Delete segment {number}"),
     "from_files": mark("Files"),
     "from_computer": mark("From this computer…"),
     "too_large": mark("This file is too large for a description."),
@@ -147,7 +157,7 @@ WORDS: Mapping[str, str] = {
     "photo_remove": mark("Remove the photo"),
     "photo_opacity": mark("Opacity"),
     "photo_scale": mark("Set the scale…"),
-    "photo_measure": mark("Drag along a length that you know."),
+    "photo_measure": mark("Drag along a length that you know, or press Enter at both ends."),
     "photo_length": mark("This length is"),
     "photo_unreadable": mark("This file is no picture."),
     "apply": mark("Apply"),
@@ -164,6 +174,7 @@ WORDS: Mapping[str, str] = {
     "keys_space": mark("Select what is in focus; with Shift several"),
     "keys_tab": mark("From joint to joint, from link to link"),
     "keys_escape": mark("Cancel; select nothing"),
+    "keys_pan": mark("Shift the view"),
     "keys_delete": mark("Delete the selection"),
     "keys_undo": mark("Undo and redo"),
     "keys_duplicate": mark("Duplicate the selection"),

@@ -20,6 +20,9 @@ from typing import Any, Protocol, TypeAlias
 from centrode.app.folders import WorkFolder
 from centrode.topics.topic import Lazily
 
+if sys.platform != "win32":
+    import resource
+
 Reply: TypeAlias = str | bytes
 """JSON as text, or a frame."""
 
@@ -90,9 +93,7 @@ def reply_to(bench: Any, message: Mapping[str, Any]) -> Reply:
 
 def _memory() -> int:
     """Greatest memory [bytes] that this process has had; 0 where the system does not say."""
-    try:
-        import resource  # noqa: PLC0415 (Windows has none)
-    except ImportError:
+    if sys.platform == "win32":
         return 0
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return used if sys.platform == "darwin" else used * 1024

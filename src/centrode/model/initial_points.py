@@ -12,7 +12,19 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.reading import FRAME, Problem, Problems, named_entries, read_name, two_points, value_text
 from centrode.model.units import read_quantity
-from centrode.model.values import Vector, read_coordinates
+from centrode.model.values import (
+    Axes,
+    Vector,
+    angle_between,
+    arc,
+    axes,
+    dot,
+    longitude_latitude,
+    makes_arc,
+    read_coordinates,
+    tangent_towards,
+    unit_vector,
+)
 
 Tables = Mapping[str, Any]
 
@@ -28,13 +40,11 @@ def with_links_between_points(data: Tables) -> Tables:
     Raises
     ------
     Problems
-        On the sphere; a point that is missing or given twice in different places; points that coincide; a length, an
-        angle or a start that contradicts them.
+        A point that is missing or given twice in different places; points that coincide, or lie opposite on the sphere;
+        a length, an angle or a start that contradicts them.
     """
-    if data.get("space") == "sphere":
-        what = _("points in the axes of the frame are given in the plane only")
-        raise Problem(what, _("give the links lengths and angles"), ("points",))
-    return _Expansion(data).tables()
+    expansion = _SphericalExpansion if data.get("space") == "sphere" else _Expansion
+    return expansion(data).tables()
 
 
 class _Expansion:
@@ -93,9 +103,12 @@ class _Expansion:
 
     def _agrees(self, name: str, value: Any) -> bool:
         try:
-            return math.dist(read_coordinates(value), self.places[name]) <= AGREES
+            return self._distance(read_coordinates(value), self.places[name]) <= AGREES
         except Problem:
             return True  # what is wrong with these coordinates is said where they are read
+
+    def _distance(self, one: Vector, other: Vector) -> float:
+        return math.dist(one, other)
 
     def _named(self, names: Sequence[str], at: reading.Place) -> dict[str, Vector]:
         """Coordinates of points by their names; those that are missing are problems."""
@@ -124,22 +137,28 @@ class _Expansion:
         for key in ("length", "angle"):
             if link.get(key) is not None:
                 self._add(_("{key} follows from its points").format(key=key), _("remove it"), *at, key)
+        return self._link_between(link, body, names, places, at)
+
+    def _link_between(
+        self, link: Tables, body: str, names: Sequence[str], places: Mapping[str, Vector], at: reading.Place
+    ) -> Any:
         first, second = places[names[0]], places[names[1]]
         length = math.dist(first, second)
         if length <= AGREES:
             what = _("its points {first} and {second} coincide").format(first=names[0], second=names[1])
             self._add(what, _("correct their coordinates"), *at, "points")
             return link
-        angle = math.atan2(second[1] - first[1], second[0] - first[0])
-        self.poses[body] = first, angle
-        # the start of a drive says how the angle of its link is counted
-        turned = {} if body in self.driven else {"angle": _in_radians(angle)}
+        self.poses[body] = first, math.atan2(second[1] - first[1], second[0] - first[0])
         if len(names) == 2:
-            return {**link, "points": tuple(names), "length": length, **turned}
+            return {**link, "points": tuple(names), "length": length, **self._turned(body)}
         local = {point: self._local(body, place) for point, place in places.items()}
         # exactly on the axis that they make
         local |= {names[0]: (0.0, 0.0), names[1]: (length, 0.0)}
-        return {**link, "points": local, **turned}
+        return {**link, "points": local, **self._turned(body)}
+
+    def _turned(self, body: str) -> dict[str, str]:
+        """The angle of a link; the start of a drive says by itself how that of its link is counted."""
+        return {} if body in self.driven else {"angle": _in_radians(self.poses[body][1])}
 
     def _local(self, link: str, place: Vector) -> Vector:
         """A place in the axes of a link: from its first point towards its second."""
@@ -166,7 +185,7 @@ class _Expansion:
         link, base = _name(drive.get("link")), _name(drive.get("relative_to", FRAME))
         if link not in self.poses or base is None or (base != FRAME and base not in self.poses):
             return drive
-        angle = self.poses[link][1] - (0.0 if base == FRAME else self.poses[base][1])
+        angle = self._angle_against(link, base)
         start = drive.get("start")
         if start is None:
             return {**drive, "start": _in_radians(angle)}
@@ -180,8 +199,111 @@ class _Expansion:
             self._add(said, _("correct the start, or the points"), "drives", number, "start")
         return drive
 
+    def _angle_against(self, link: str, base: str) -> float:
+        """Angle of a link from the axes of another one, or of the frame."""
+        return self.poses[link][1] - (0.0 if base == FRAME else self.poses[base][1])
+
     def _add(self, what: str, repair: str, *at: Any) -> None:
         self.wrong.append(Problem(what, repair, at))
+
+
+class _SphericalExpansion(_Expansion):
+    """The same on the unit sphere: lengths are arcs, and the angle of a link is measured from an arc.
+
+    Without a `reference` of its own this is the arc from its first point to the first other point of the frame, or of
+    the link that its drive counts from.
+    """
+
+    def __init__(self, data: Tables) -> None:
+        super().__init__(data)
+        self.axes: dict[str, Axes] = {}
+        drives = data.get("drives")
+        entries = drives if isinstance(drives, list | tuple) else ()
+        self.bases = {
+            _name(one.get("link")): _name(one.get("relative_to", FRAME))
+            for one in entries
+            if isinstance(one, Mapping)
+        }
+
+    def _fixed(self, points: Any) -> Any:
+        fixed = super()._fixed(points)
+        if not isinstance(points, list | tuple):
+            return fixed
+        return {name: tuple(map(_in_radians, place)) for name, place in fixed.items()}
+
+    def _distance(self, one: Vector, other: Vector) -> float:
+        return arc(unit_vector(one), unit_vector(other))
+
+    def _link_between(
+        self, link: Tables, body: str, names: Sequence[str], places: Mapping[str, Vector], at: reading.Place
+    ) -> Any:
+        first, second = unit_vector(places[names[0]]), unit_vector(places[names[1]])
+        if not makes_arc(first, second):
+            what = _("its points {first} and {second} coincide, or lie opposite")
+            self._add(
+                what.format(first=names[0], second=names[1]), _("correct their coordinates"), *at, "points"
+            )
+            return link
+        self.axes[body] = axes(first, tangent_towards(first, second))
+        reference = link.get("reference") or self._reference(body, names[0])
+        turned: dict[str, Any] = {}
+        if isinstance(reference, list | tuple) and len(reference) == 2 and self._place_of(reference[1]):
+            towards = unit_vector(self._place_of(reference[1]) or (0.0, 0.0))
+            if makes_arc(first, towards):
+                self.poses[body] = places[names[0]], angle_between(first, towards, second)
+                turned = {"reference": reference, **self._turned(body)}
+        length = arc(first, second)
+        if len(names) == 2:
+            return {**link, "points": tuple(names), "length": _in_radians(length), **turned}
+        local = {point: self._local(body, place) for point, place in places.items()}
+        local |= {names[0]: (0.0, 0.0), names[1]: (length, 0.0)}
+        spelled = {point: tuple(map(_in_radians, place)) for point, place in local.items()}
+        return {**link, "points": spelled, **turned}
+
+    def _place_of(self, point: Any) -> Vector | None:
+        return self.places.get(_name(point) or "")
+
+    def _reference(self, body: str, first: str) -> tuple[str, str] | None:
+        """The arc from which the angle of a link is measured."""
+        base = self.bases.get(body) or FRAME
+        table = self.data.get("frame") if base == FRAME else (self.data.get("links") or {}).get(base)
+        given = table.get("points") if isinstance(table, Mapping) else None
+        names = [_name(one) for one in given or (two_points(base) or ())]
+        for name in names:
+            place = self.places.get(name or "")
+            if name and place and makes_arc(unit_vector(self.places[first]), unit_vector(place)):
+                return first, name
+        return None
+
+    def _local(self, link: str, place: Vector) -> Vector:
+        vector = unit_vector(place)
+        x, y, z = (dot(vector, axis) for axis in self.axes[link])
+        return longitude_latitude((x, y, z))
+
+    def _guide(self, number: int, guide: Any) -> Any:
+        """A guide without a radius of its own passes through its point."""
+        if not isinstance(guide, Mapping) or guide.get("radius") is not None or guide.get("pole") is None:
+            return guide
+        on, place = _name(guide.get("on", FRAME)), self._place_of(guide.get("point"))
+        if place is None or on is None or (on != FRAME and on not in self.axes):
+            return guide
+        try:
+            pole = guide["pole"]
+            named = self._place_of(pole) if isinstance(pole, str) else None
+            if isinstance(pole, str) and named is None:
+                return guide  # what it names is looked for where guides are read
+            if named is None or on == FRAME:
+                here = place if on == FRAME else self._local(on, place)
+                there = read_coordinates(pole) if named is None else named
+            else:
+                here, there = place, named
+        except Problem:
+            return guide  # what is wrong with these coordinates is said where they are read
+        return {**guide, "radius": _in_radians(self._distance(here, there))}
+
+    def _angle_against(self, link: str, base: str) -> float:
+        # the reference is an arc of the link that the drive counts from
+        return self.poses[link][1]
 
 
 def _name(value: Any) -> str | None:

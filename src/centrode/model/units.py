@@ -214,11 +214,19 @@ def international(text: str) -> str:
     return text.replace("·", "*").replace("²", "^2").replace("³", "^3")
 
 
+def number_and_unit(text: str) -> tuple[str, str] | None:
+    """A number and its unit as they are written, the unit empty where there is none; None for any other text."""
+    found = _NUMBER.fullmatch(text.strip())
+    if found is None or not (found.group(2) == "" or _UNIT.fullmatch(found.group(2))):
+        return None
+    return found.group(1), found.group(2)
+
+
 def _split_unit(text: str, kind: str) -> tuple[float, str]:
     """Number and unit of a text: the shortest formula from the left with a unit, or nothing, behind."""
-    simple = _NUMBER.fullmatch(text.strip())
-    if simple and (not simple.group(2) or _UNIT.fullmatch(simple.group(2))):
-        return float(simple.group(1)), simple.group(2)
+    simple = number_and_unit(text)
+    if simple:
+        return float(simple[0]), simple[1]
     words = text.split()
     for count in range(1, len(words) + 1):
         unit = " ".join(words[count:])

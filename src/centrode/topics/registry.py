@@ -276,7 +276,9 @@ SIMULATION = Topic(
         chapters=(ChapterOfTopic("simulation", mark("Motion under loads"), code="ct.simulate(mechanism)"),),
         instants=False,
     ),
-    panel=Panel(needs=mark("the description has no [simulation] with a motor or a driving moment")),
+    panel=Panel(
+        needs=mark("the description has no [simulation] with a motor or a driving moment"), free=True
+    ),
 )
 
 REACTIONS = Topic(

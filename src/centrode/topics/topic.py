@@ -227,12 +227,14 @@ class Panel:
     needs : what a description lacks that the topic does not concern, marked for the catalogues
     arguments : of the computation
     pictures : whether its pictures are shown
+    free : whether it takes descriptions with drives that have no law too
     """
 
     title: str = ""
     needs: str = ""
     arguments: Mapping[str, Any] = field(default_factory=dict)
     pictures: bool = True
+    free: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
 import { SelectionCard, duplicateSelected, removeSelected } from "./selection_card";
 import { Stage } from "./stage";
-import { type Mode, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved } from "./state";
+import { type Mode, SPHERE, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, refusal, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved, write } from "./state";
 import { TextPane } from "./text_pane";
 import { language, say } from "./words";
 
@@ -45,7 +45,7 @@ function TopBar() {
 }
 
 function Tools() {
-  const spherical = scene.value?.kind === "sphere";
+  const draws = scene.value?.draws !== false;
   const press = (on: boolean, name: string, act: () => void) => (
     <button type="button" class="icon-button" aria-pressed={on} data-do={name} aria-label={say(name)} title={say(name)} onClick={act}><Icon name={name} /></button>
   );
@@ -56,7 +56,7 @@ function Tools() {
     <div class="tools" role="toolbar" aria-label={say("tools")}>
       <div class="modes" role="group" aria-label={say("modes")}>
         {MODES.map((one) => {
-          const barred = spherical && one !== "move", why = barred ? say("not_on_sphere") : say(`mode_${one}_hint`);
+          const barred = !draws && one !== "move", why = barred ? say("not_on_sphere") : say(`mode_${one}_hint`);
           return (
             <button type="button" aria-pressed={mode.value === one} aria-disabled={barred} data-mode={one} title={why}
               onClick={() => { if (barred) tell(why, true); else batch(() => { mode.value = one; tell(why); }); }}><Icon name={one} /><span>{say(`mode_${one}`)}</span></button>
@@ -89,7 +89,12 @@ function StageView() {
       <div class="stage-area">
         <div class="stage-holder" ref={holder} hidden={cam} />
         {cam && <CamStage />}
-        {empty && <p class="welcome">{say("empty_stage")}</p>}
+        {empty && (
+          <div class="welcome">
+            <p>{say(scene.value?.kind === "sphere" ? "empty_sphere" : "empty_stage")}</p>
+            {scene.value?.kind === "plane" && <button type="button" data-do="sphere" onClick={() => write(SPHERE)}>{say("draw_on_sphere")}</button>}
+          </div>
+        )}
       </div>
       <p class={said.value.bad ? "said bad" : "said"} role="status" id="said">{said.value.text}</p>
       <Player />
@@ -103,7 +108,7 @@ function Lost() {
 }
 
 function App() {
-  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" && <p>centrode</p>}</main>;
+  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" && <p class="refusal">{refusal || "centrode"}</p>}</main>;
   return (
     <div class={editing.value ? "bench live with-text" : "bench live"}>
       <TopBar />
@@ -149,19 +154,19 @@ addEventListener("keydown", (event) => {
     Delete: () => void removeSelected(), Backspace: () => void removeSelected(), ",": () => step(-1), ".": () => step(1), "?": () => { dialog.value = "keys"; },
   };
   const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!act || (scene.value?.kind === "sphere" && "dge".includes(event.key))) return;
+  if (!act || (scene.value?.draws === false && "dge".includes(event.key))) return;
   event.preventDefault();
   act();
 });
 addEventListener("hashchange", () => void follow());
 addEventListener("beforeunload", keepNow);
 effect(() => {
-  if (scene.value?.kind === "sphere" && mode.value !== "move") mode.value = "move";
+  if (scene.value?.draws === false && mode.value !== "move") mode.value = "move";
 });
 effect(() => {
   if (mode.value === "move") return;
   playing.value = false; // what is drawn is the initial position
-  if (scene.peek()?.kind === "plane") place.value = motion.peek()?.start ?? 0;
+  if (scene.peek()?.kind !== "cam") place.value = motion.peek()?.start ?? 0;
 });
 effect(() => {
   document.title = `${unsaved.value ? "• " : ""}${scene.value?.title || fileName.value || "centrode"}`;

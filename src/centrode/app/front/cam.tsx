@@ -1,6 +1,7 @@
 // A cam: its profile under the follower, and its segments as fields, with the profile following every change.
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { Icon } from "./icons";
 import { ChartView, Missing, signed } from "./motion_panel";
 import { U, digits } from "./outlines";
 import { make } from "./picture";
@@ -69,34 +70,45 @@ function Field({ label, value, unit, path, wide }: { label: string; value: strin
   );
 }
 
-function SegmentRow({ segment, number }: { segment: Segment; number: number }) {
-  const fields = (scene.value?.dimensions ?? []).filter((one) => one.path === `${segment.path}.angle` || one.path === `${segment.path}.to`);
+function SegmentRow({ segment, number, last }: { segment: Segment; number: number; last: boolean }) {
+  const words: Record<string, string> = { angle: "segment_angle", share: "segment_share", time: "segment_time", to: "segment_to" };
+  const key = (path: string): string => path.slice(segment.path.length + 1);
+  const fields = (scene.value?.dimensions ?? []).filter((one) => one.of === segment.path && words[key(one.path)]);
   return (
     <li class="segment">
       <span class="number">{number}</span>
-      {fields.map((one) => <Field label={say(one.path.endsWith(".to") ? "segment_to" : "segment_angle")} value={one.shown} unit={one.unit} path={one.path} key={one.path} />)}
+      {fields.map((one) => <Field label={say(words[key(one.path)]!)} value={one.shown} unit={one.unit} path={one.path} key={one.path} />)}
       <label class="field wide"><span>{say("segment_law")}</span>
-        <select value={segment.law ?? ""} onChange={(event) => void edit({ do: "set", path: `${segment.path}.curve`, value: event.currentTarget.value })}>
+        <select value={segment.law ?? ""} onChange={(event) => void edit({ do: "set_curve", segment: number - 1, curve: event.currentTarget.value })}>
           {[...new Set([segment.law ?? "", ...(segment.laws ?? [])])].filter(Boolean).map((law) => <option value={law}>{segment.names?.[law] ?? law}</option>)}
         </select>
       </label>
+      <span class="ends">
+        <button type="button" class="plain" data-do="add-segment" aria-label={say("segment_add", { number })} title={say("segment_add", { number })}
+          onClick={() => void edit({ do: "add_segment", after: number - 1 })}><Icon name="plus" /></button>
+        <button type="button" class="plain" data-do="delete-segment" aria-label={say("segment_delete", { number })} title={say("segment_delete", { number })} disabled={last}
+          onClick={() => void edit({ do: "delete_segment", segment: number - 1 })}><Icon name="close" /></button>
+      </span>
     </li>
   );
 }
 
 export function CamPanel() {
   const now = scene.value, cam = now?.cam, course = cam?.displacement;
-  if (!cam || cam.missing || (!cam.profile.length && !course)) return <Missing message={cam?.missing ?? problems.value[0]?.message ?? say("no_cam")} repair={cam?.repair ?? problems.value[0]?.repair} />;
+  if (!cam) return <Missing message={problems.value[0]?.message ?? say("no_cam")} repair={problems.value[0]?.repair} />;
+  // what is wrong stands above its fields: there it is corrected
+  const wrong = cam.missing ? cam : problems.value[0] ? { missing: problems.value[0].message, repair: problems.value[0].repair ?? undefined } : !cam.profile.length && !course ? { missing: say("no_cam"), repair: undefined } : null;
   const angle = now?.display?.angle ?? { unit: "rad", factor: 1 }, lift = course?.unit === "rad" ? angle : now?.display?.length ?? { unit: "m", factor: 1 };
   const x = { values: (course?.angle ?? []).map((one) => one * angle.factor), label: "φ", unit: signed(angle.unit) };
   const own = (now?.dimensions ?? []).filter((one) => !one.path.startsWith("segments."));
   return (
     <>
+      {wrong && <Missing message={wrong.missing ?? ""} repair={wrong.repair} />}
       {own.length > 0 && <div class="fields">{own.map((one) => <Field label={one.name} value={one.shown} unit={one.unit} path={one.path} key={one.path} />)}</div>}
       {cam.segments.length > 0 && (
         <>
           <h3>{say("segments")}</h3>
-          <ol class="segments">{cam.segments.map((segment, k) => <SegmentRow segment={segment} number={k + 1} key={segment.path} />)}</ol>
+          <ol class="segments">{cam.segments.map((segment, k) => <SegmentRow segment={segment} number={k + 1} last={cam.segments.length < 2} key={segment.path} />)}</ol>
         </>
       )}
       {course?.missing && <Missing message={course.missing} repair={course.repair} />}

@@ -1,5 +1,5 @@
 // A motion as the server sends it, and its numbers between the samples.
-import { type Frame, isFrame, type Place } from "./protocol";
+import { type DrivingCam, type Frame, isFrame, type Place } from "./protocol";
 
 export interface MotionEvent {
   drive: number;
@@ -48,6 +48,16 @@ export class Motion {
   }
   get start(): number {
     return this.frame.header.start ?? 0;
+  }
+  get cams(): DrivingCam[] {
+    return this.frame.header.cams ?? [];
+  }
+  // The numbers of one sample of an array, between samples those of both in proportion.
+  row(array: string, at: number): number[] {
+    const found = this.frame.arrays[array];
+    if (!found) return [];
+    const wide = found.numbers.length / this.samples, low = Math.min(this.last, Math.max(0, Math.floor(at))), next = Math.min(this.last, low + 1), share = at - low;
+    return Array.from({ length: wide }, (_, k) => found.numbers[low * wide + k]! + share * (found.numbers[next * wide + k]! - found.numbers[low * wide + k]!));
   }
   has(array: string): boolean {
     return array in this.frame.arrays;

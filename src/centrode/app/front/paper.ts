@@ -60,9 +60,25 @@ export class Plane implements Paper {
   }
 }
 
-const dot = (a: Place, b: Place): number => a[0]! * b[0]! + a[1]! * b[1]! + a[2]! * b[2]!;
+export const dot = (a: Place, b: Place): number => a[0]! * b[0]! + a[1]! * b[1]! + a[2]! * b[2]!;
 const cross = (a: Place, b: Place): Place => [a[1]! * b[2]! - a[2]! * b[1]!, a[2]! * b[0]! - a[0]! * b[2]!, a[0]! * b[1]! - a[1]! * b[0]!];
 const unit = (a: Place): Place => a.map((value) => value / (Math.hypot(...a) || 1));
+export const angles = ([x = 0, y = 0, z = 0]: Place): Place => [Math.atan2(y, x), Math.atan2(z, Math.hypot(x, y))];
+export const fromAngles = ([longitude = 0, latitude = 0]: Place): Place => [Math.cos(latitude) * Math.cos(longitude), Math.cos(latitude) * Math.sin(longitude), Math.sin(latitude)];
+export const arc = (a: Place, b: Place): number => Math.atan2(Math.hypot(...cross(a, b)), dot(a, b));
+// Right-handed axes of two places: the first, across towards the second, and their pole.
+export function globeAxes([first = [], second = []]: Place[]): [Place, Place, Place] {
+  const pole = unit(cross(first, second));
+  return [unit(first), cross(pole, unit(first)), pole];
+}
+// A circle about a pole, as a closed line.
+export function around(pole: Place, radius: number): Place[] {
+  const across = unit(cross(pole, Math.abs(pole[2]!) < 0.9 ? [0, 0, 1] : [1, 0, 0])), third = cross(pole, across);
+  return Array.from({ length: 4 * ARC + 1 }, (_, k) => {
+    const turn = (k * Math.PI) / (2 * ARC);
+    return pole.map((value, i) => Math.cos(radius) * value + Math.sin(radius) * (Math.cos(turn) * across[i]! + Math.sin(turn) * third[i]!));
+  });
+}
 const ARC = 32; // pieces of a great arc
 
 export class Globe implements Paper {

@@ -1,8 +1,8 @@
 // Draws a scene in conventional signs: elements are made once for a scene and then only moved.
 import type { Motion } from "./motion";
-import { BLOCK, HEAD, SIGN, SUPPORT, U, circle, digits, drawn, groundLine, minus, plus, size, slot, turned, turningArc } from "./outlines";
-import { Globe, type Paper, type Plane } from "./paper";
-import type { Block, Place, Scene, SceneGuide, SceneLink, ScenePoint } from "./protocol";
+import { BLOCK, HEAD, SIGN, SUPPORT, U, circle, digits, drawn, groundLine, hatched, minus, plus, size, slot, turned, turningArc } from "./outlines";
+import { Globe, type Paper, type Plane, around, dot, globeAxes } from "./paper";
+import type { Block, Place, Scene, SceneGuide, SceneLink, ScenePoint, SceneWheel } from "./protocol";
 
 const SVG = "http://www.w3.org/2000/svg";
 export const make = <K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>, parent?: Element): SVGElementTagNameMap[K] => {
@@ -42,8 +42,9 @@ export class Picture {
   scene: Scene | null = null;
   motion: Motion | null = null;
   paper: Paper;
-  private guides: { guide: SceneGuide; line: SVGPathElement; block: SVGPathElement | null; joint: SVGPathElement; grip: SVGPathElement; ends: Place[] | null }[] = [];
-  private wheels: { link: string; centre: string; radius: number; rim: SVGPathElement }[] = [];
+  private guides: { guide: SceneGuide; line: SVGPathElement; far: SVGPathElement; block: SVGPathElement | null; joint: SVGPathElement; grip: SVGPathElement; ends: Place[] | null }[] = [];
+  private wheels: { link: string; centre: string; radius: number; track?: SceneWheel["track"]; rim: SVGPathElement; far: SVGPathElement; way: SVGPathElement; ends: [number, number] | null }[] = [];
+  private cams: { body: SVGPathElement; roller: SVGCircleElement; lines: SVGPathElement; hub: SVGCircleElement; of: Motion }[] = [];
   private barrels: { ends: [string, string]; body: SVGPathElement; rod: SVGPathElement }[] = [];
   private drives: { point: string; link: string; forward: boolean; arc: SVGPathElement; head: SVGPathElement; middle: number }[] = [];
   private tracks: { name: string; near: SVGPathElement; far: SVGPathElement }[] = [];
@@ -71,7 +72,17 @@ export class Picture {
     this.scene = scene;
     for (const layer of Object.values(this.layers)) layer.replaceChildren();
     const { behind, links, grips, signs, names, tracks } = this.layers;
-    this.wheels = (scene.wheels ?? []).map((wheel) => ({ ...wheel, rim: make("path", { class: `wheel hue-${this.colour(wheel.link)}` }, behind) }));
+    this.wheels = (scene.wheels ?? []).map((wheel) => {
+      const hue = wheel.link === "frame" ? "" : ` hue-${this.colour(wheel.link)}`;
+      return {
+        ...wheel,
+        way: make("path", { class: "ground" }, this.layers.back),
+        far: make("path", { class: `pitch-circle far${hue}` }, behind),
+        rim: make("path", { class: wheel.pitch ? `pitch-circle${hue}` : `wheel${hue}` }, behind),
+        ends: null,
+      };
+    });
+    this.cams = [];
     this.links = scene.links.map((link, k) => {
       const hue = `hue-${k % 6}`;
       const sign = {
@@ -89,7 +100,8 @@ export class Picture {
       const sign = {
         guide,
         joint: make("path", { class: `joint${hue}` }, behind),
-        line: make("path", { class: frame ? "ground" : guide.link ? `link rail${hue}` : `shape slot${hue}` }, frame ? this.layers.back : behind),
+        far: make("path", { class: "orbit far" }, behind),
+        line: make("path", { class: scene.kind === "sphere" ? `orbit${hue}` : frame ? "ground" : guide.link ? `link rail${hue}` : `shape slot${hue}` }, frame ? this.layers.back : behind),
         block: scene.kind === "plane" && (guide.link || frame) ? make("path", { class: `shape block${guide.link ? ` hue-${this.colour(guide.link)}` : ""}`, d: BLOCK }, links) : null,
         grip: make("path", { class: "grip guide" }, grips),
         ends: null,
@@ -155,13 +167,8 @@ export class Picture {
     }
     for (const sign of this.links) this.showLink(sign, now);
     for (const sign of this.guides) this.showGuide(sign, now, flat, where);
-    for (const { link, centre, radius, rim } of this.wheels) {
-      const place = flat.get(centre);
-      put(rim, "display", place && !(paper instanceof Globe) ? "inline" : "none");
-      if (!place || paper instanceof Globe) continue;
-      put(rim, "d", circle(radius * (paper as Plane).scale * U, true));
-      put(rim, "transform", at(place, -this.turn(link, where)));
-    }
+    for (const wheel of this.wheels) this.showWheel(wheel, now, flat, where);
+    this.showCams(sample);
     for (const { ends, body, rod } of this.barrels) this.showBarrel(flat.get(ends[0]) ?? null, flat.get(ends[1]) ?? null, body, rod);
     for (const drive of this.drives) {
       const place = flat.get(drive.point), way = this.direction(drive.link, drive.point, now);
@@ -176,6 +183,77 @@ export class Picture {
     }
     this.showVectors(flat, sample);
     if (this.shows.names !== false) this.nameAll(flat);
+  }
+
+  private showWheel(wheel: (typeof this.wheels)[number], now: Map<string, Place | null>, flat: Map<string, Place | null>, where: Where): void {
+    const { rim, far, way, track } = wheel, { paper } = this, place = flat.get(wheel.centre), centre = now.get(wheel.centre);
+    for (const one of [rim, far]) put(one, "display", place ? "inline" : "none");
+    if (!place || !centre) return;
+    if (paper instanceof Globe) {
+      const [near, behind] = paper.paths(around(centre, wheel.radius));
+      put(rim, "d", near);
+      put(far, "d", behind);
+      return;
+    }
+    const scale = (paper as Plane).scale * U;
+    put(rim, "d", circle(wheel.radius * scale, true));
+    put(rim, "transform", at(place, -this.turn(wheel.link, where)));
+    if (!track) return;
+    const carried = this.carried(track.on, track.at, now, where), angle = this.turned(track.on, where);
+    put(way, "display", carried ? "inline" : "none");
+    if (!carried) return;
+    if (track.radius !== null) {
+      put(way, "d", circle(track.radius * scale));
+      put(way, "transform", at(paper.flat(carried)));
+    } else {
+      const on = turned([Math.cos(track.direction!), Math.sin(track.direction!)], angle), [low, high] = wheel.ends ?? [0, 0];
+      const [start, end] = [low - 1.2 * wheel.radius, high + 1.2 * wheel.radius].map((reach) => paper.flat(plus(carried, on, reach))) as [Place, Place];
+      // the wheel is on the left of its line, the ground on the right
+      put(way, "d", track.on === "frame" ? hatched(start, end, [on[1]!, on[0]!]) : drawn([start, end]));
+    }
+  }
+
+  // How far a link has turned since the initial position.
+  private turned(link: string, where: Where): number {
+    return link === "frame" ? 0 : this.turn(link, where) - (this.scene!.links.find((one) => one.name === link)?.angle ?? 0);
+  }
+  // Where a link has carried a place since the initial position.
+  private carried(link: string, place: Place, now: Map<string, Place | null>, where: Where): Place | null {
+    if (link === "frame") return place;
+    const before = this.origin(link, (name) => this.scene!.points.find((one) => one.name === name)?.at ?? null), after = this.origin(link, (name) => now.get(name) ?? null);
+    return before && after && plus(after, turned(minus(place, before), this.turned(link, where)));
+  }
+
+  // Cams turn about their axis; what they move follows with the motion.
+  private showCams(sample: number | null): void {
+    const { motion, paper } = this;
+    if (motion && motion.cams.length && this.cams[0]?.of !== motion) {
+      for (const one of this.cams) for (const element of [one.body, one.roller, one.lines, one.hub]) element.remove();
+      this.cams = motion.cams.map(() => ({
+        of: motion,
+        body: make("path", { class: "cam-body hue-3" }, this.layers.behind), roller: make("circle", { class: "roller hue-4" }, this.layers.behind), lines: make("path", { class: "cam-line" }, this.layers.behind), hub: make("circle", { class: "hinge", r: SIGN }, this.layers.behind),
+      }));
+    }
+    this.cams.forEach((sign, k) => {
+      const cam = motion?.cams[k], shown = cam && sample !== null && sign.of === motion && !(paper instanceof Globe);
+      for (const one of [sign.body, sign.roller, sign.lines, sign.hub]) put(one, "display", shown ? "inline" : "none");
+      if (!shown) return;
+      const turn = motion!.row(`cam_turns_${k}`, sample!)[0] ?? 0;
+      const place = (one: Place): Place => paper.flat(plus(cam.centre, turned(minus(one, cam.centre), turn)));
+      put(sign.body, "d", `${drawn(cam.outline.map(place), true)}${drawn(cam.mark.map(place))}`);
+      const hub = paper.flat(cam.centre);
+      put(sign.hub, "cx", digits(hub[0]!));
+      put(sign.hub, "cy", digits(hub[1]!));
+      const roller = motion!.row(`cam_rollers_${k}`, sample!), spot = roller.length === 2 && roller.every(Number.isFinite) ? paper.flat(roller) : null;
+      if (spot && cam.roller) {
+        put(sign.roller, "cx", digits(spot[0]!));
+        put(sign.roller, "cy", digits(spot[1]!));
+        put(sign.roller, "r", digits(cam.roller * (paper as Plane).scale * U));
+      } else put(sign.roller, "display", "none");
+      const lines = motion!.row(`cam_lines_${k}`, sample!), pieces: string[] = [];
+      for (let one = 0; one + 3 < lines.length; one += 4) pieces.push(drawn([lines.slice(one, one + 2), lines.slice(one + 2, one + 4)].map((end) => paper.flat(end))));
+      put(sign.lines, "d", pieces.join(""));
+    });
   }
 
   private direction(link: string, from: string, now: Map<string, Place | null>): number {
@@ -244,6 +322,11 @@ export class Picture {
   }
 
   rails(): void {
+    for (const wheel of this.wheels) {
+      const track = wheel.track;
+      if (!track || track.direction === null) continue;
+      wheel.ends = this.travel({ name: "", point: wheel.centre, on: track.on, through: track.at, direction: track.direction });
+    }
     for (const sign of this.guides) {
       const travel = this.travel(sign.guide), own = this.lineOf(sign.guide);
       sign.ends = travel && own && travel.map((reach) => plus(own.through, [Math.cos(own.direction), Math.sin(own.direction)], reach));
@@ -251,8 +334,15 @@ export class Picture {
   }
 
   private showGuide(sign: (typeof this.guides)[number], now: Map<string, Place | null>, flat: Map<string, Place | null>, where: Where): void {
-    const { guide, line, block, joint, grip } = sign, { paper } = this;
-    if (paper instanceof Globe) return;
+    const { guide, line, far, block, joint, grip } = sign, { paper } = this;
+    if (paper instanceof Globe) {
+      const pole = guide.circle && this.carriedOnGlobe(guide.on, guide.circle.pole, now);
+      const [near, behind] = pole ? paper.paths(around(pole, guide.circle!.radius)) : ["", ""];
+      put(line, "d", near);
+      put(grip, "d", near);
+      put(far, "d", behind);
+      return;
+    }
     const place = now.get(guide.point) ?? null, frame = guide.on === "frame";
     const origin = frame ? [0, 0] : this.origin(guide.on, (name) => now.get(name) ?? null), angle = frame ? 0 : this.turn(guide.on, where);
     const own = this.lineOf(guide);
@@ -285,6 +375,17 @@ export class Picture {
       put(block, "display", spot ? "inline" : "none");
       if (spot) put(block, "transform", at(spot, Math.atan2(on[1]!, on[0]!)));
     }
+  }
+
+  // Where a link of the sphere has carried a place since the initial position: by two of its points.
+  private carriedOnGlobe(link: string, place: Place, now: Map<string, Place | null>): Place | null {
+    if (link === "frame") return place;
+    const points = this.scene!.links.find((one) => one.name === link)?.points.slice(0, 2) ?? [];
+    const before = points.map((name) => this.scene!.points.find((one) => one.name === name)?.at), after = points.map((name) => now.get(name));
+    if (points.length < 2 || !before.every(Boolean) || !after.every(Boolean)) return null;
+    const own = globeAxes(before as Place[]), other = globeAxes(after as Place[]);
+    const numbers = own.map((axis) => dot(place, axis));
+    return [0, 1, 2].map((k) => numbers.reduce((sum, value, axis) => sum + value * other[axis]![k]!, 0));
   }
 
   private showBarrel(foot: Place | null, end: Place | null, body: SVGPathElement, rod: SVGPathElement): void {

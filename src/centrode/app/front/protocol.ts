@@ -45,6 +45,7 @@ export interface SceneGuide {
   on: string;
   through: Place | null; // both in axes of the frame, at the initial position
   direction: number | null;
+  circle?: { pole: Place; radius: number } | null; // on the sphere, where its link carries it at the initial position
   link?: string | null;
   slider?: boolean;
 }
@@ -52,7 +53,14 @@ export interface SceneWheel {
   link: string;
   centre: string;
   radius: number;
-  on?: string | null;
+  pitch?: boolean; // a circle in which wheels mesh
+  track?: { on: string; at: Place; radius: number | null; direction: number | null } | null; // where it lies at the initial position
+}
+export interface DrivingCam {
+  centre: Place;
+  outline: Place[]; // these at the first sample
+  mark: Place[];
+  roller: number | null;
 }
 export interface SceneDrive {
   name: string;
@@ -100,6 +108,7 @@ export interface Display {
 }
 export interface Scene {
   kind: "plane" | "sphere" | "cam";
+  draws?: boolean;
   title?: string;
   size?: [Place, Place] | null;
   display?: Display;

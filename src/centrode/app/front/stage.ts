@@ -2,7 +2,7 @@
 import { batch, effect } from "@preact/signals";
 import { SUPERSEDED } from "./connection";
 import { U, digits, minus, plus, roundStep, size } from "./outlines";
-import { Globe, Plane } from "./paper";
+import { Globe, type Paper, Plane, angles, arc, fromAngles } from "./paper";
 import { Picture, make } from "./picture";
 import { photo, scalePhoto } from "./photo";
 import { type Frame, type Place, type Reading, isFrame } from "./protocol";
@@ -10,6 +10,7 @@ import * as state from "./state";
 import { ask, digest, edit, mode, motion, place, playing, scene, selection, tell } from "./state";
 import { say, spelled, withUnit } from "./words";
 
+const DEGREE = Math.PI / 180, DEGREE_STEPS = [1, 2, 5, 10, 15];
 const NEAR = 14, NEAR_TOUCH = 24, NEAR_LINE = 9; // pixels
 const MOVED = 5; // pixels that make a drag of a click
 
@@ -84,6 +85,9 @@ export class Stage {
     effect(() => this.svg.setAttribute("data-mode", mode.value));
   }
 
+  private get paper(): Paper {
+    return this.spherical ? this.globe : this.plane;
+  }
   get spherical(): boolean {
     return scene.value?.kind === "sphere";
   }
@@ -158,8 +162,13 @@ export class Stage {
       if (moving) for (let k = 0; k < moving.samples; k += 4) take(moving.place(point.name, k));
     }
     for (const wheel of scene.peek()?.wheels ?? []) {
-      const at = scene.peek()!.points.find((one) => one.name === wheel.centre)?.at;
-      if (at) for (const side of [-wheel.radius, wheel.radius]) take([at[0]! + side, at[1]! + side]);
+      const places = [scene.peek()!.points.find((one) => one.name === wheel.centre)?.at ?? null];
+      if (moving) for (let k = 0; k < moving.samples; k += 4) places.push(moving.place(wheel.centre, k));
+      for (const at of places) if (at) for (const side of [-wheel.radius, wheel.radius]) take([at[0]! + side, at[1]! + side]);
+    }
+    for (const cam of moving?.cams ?? []) {
+      const reach = Math.max(...cam.outline.map((place) => size(minus(place, cam.centre))));
+      for (const side of [-reach, reach]) take(cam.centre.map((value) => value + side));
     }
     if (low[0]! <= high[0]!) this.plane.fit(low, high);
     else {
@@ -181,14 +190,16 @@ export class Stage {
 
   // Step of the grid [m]: a round number of the units that the description is shown in.
   get step(): number {
+    if (this.spherical) return (DEGREE_STEPS.find((one) => one * DEGREE * this.globe.radius >= 12 * U) ?? 15) * DEGREE;
     const factor = scene.peek()?.display?.length.factor ?? 1;
     return roundStep((18 / this.plane.scale) * factor) / factor;
   }
 
   private ground(): void {
-    const { plane } = this, flat = !this.spherical, on = flat && state.shows.peek().grid !== false;
+    const { plane } = this, flat = !this.spherical, on = state.shows.peek().grid !== false;
     for (const one of [this.grid, this.heavy, this.axes]) one.setAttribute("display", on ? "inline" : "none");
-    if (on) {
+    if (on && !flat) this.graticule();
+    else if (on) {
       const step = this.step, low = plane.back([0, plane.high * U]), high = plane.back([plane.wide * U, 0]);
       const lines = (by: number, skip: number): string => {
         let d = "";
@@ -212,6 +223,18 @@ export class Stage {
       this.image.setAttribute("height", digits(shown.high * scale));
       this.image.setAttribute("opacity", String(shown.opacity));
     }
+  }
+
+  // Meridians and parallels of the side in front, every fifteen degrees; those of the axes are darker.
+  private graticule(): void {
+    const { globe } = this, turns = Array.from({ length: 73 }, (_, k) => k * 5 * DEGREE);
+    const curve = (place: (turn: number) => Place): string => globe.paths(turns.map(place))[0];
+    const parallel = (latitude: number): string => curve((turn) => fromAngles([turn, latitude * DEGREE]));
+    const meridian = (longitude: number): string => curve((turn) => fromAngles([longitude * DEGREE, turn - Math.PI]));
+    const every = (from: number, to: number, draw: (angle: number) => string): string => Array.from({ length: (to - from) / 15 + 1 }, (_, k) => draw(from + 15 * k)).join("");
+    this.grid.setAttribute("d", every(-75, 75, parallel) + every(0, 165, meridian));
+    this.heavy.setAttribute("d", parallel(0) + meridian(0) + meridian(90));
+    this.axes.setAttribute("d", "");
   }
 
   // --- what lies where -------------------------------------------------------------------------------------------
@@ -249,10 +272,13 @@ export class Stage {
     }
     for (const guide of now.guides) {
       const path = this.svg.querySelector<SVGPathElement>(`[data-kind="guide"][data-name="${CSS.escape(guide.name)}"]`)?.getAttribute("d");
-      const numbers = path?.match(/-?[\d.]+/g)?.map(Number);
-      if (!numbers || numbers.length < 4) continue;
-      const far = toSegment(numbers.slice(0, 2), numbers.slice(2, 4));
-      if (far < least) [best, least] = [{ kind: "guide", name: guide.name }, far];
+      for (const piece of path?.split("M") ?? []) {
+        const numbers = piece.match(/-?[\d.]+/g)?.map(Number) ?? [];
+        for (let k = 3; k < numbers.length; k += 2) {
+          const far = toSegment(numbers.slice(k - 3, k - 1), numbers.slice(k - 1, k + 1));
+          if (far < least) [best, least] = [{ kind: "guide", name: guide.name }, far];
+        }
+      }
     }
     return best;
   }
@@ -262,12 +288,9 @@ export class Stage {
     const target = this.target(at, touch);
     if (target && target.name !== not?.name) {
       if (target.kind === "point") return { place: this.where().place(target.name)!, target };
-      if (target.kind === "link") return { place: this.plane.back(at), target };
+      if (target.kind === "link") return { place: this.paper.back(at), target };
     }
-    const raw = this.plane.back(at);
-    if (!state.snapping.peek() || event?.altKey) return { place: raw, target: null };
-    const step = this.step;
-    return { place: raw.map((value) => Number((Math.round(value / step) * step).toPrecision(12))), target: null };
+    return { place: this.snapped(this.paper.back(at), event, this.step), target: null };
   }
 
   // --- pointers --------------------------------------------------------------------------------------------------
@@ -310,7 +333,6 @@ export class Stage {
     if (event.button === 1 || this.space || event.button === 2) this.gesture = this.panning(at);
     else if (event.button !== 0) this.gesture = null;
     else if (scalePhoto.value) this.gesture = this.measuring(at);
-    else if (this.spherical) this.gesture = this.onSphere(target, at, event);
     else if (mode.value === "draw" || mode.value === "guide") this.gesture = this.drawing(at, event, touch);
     else if (mode.value === "edit") this.gesture = this.editing(target, event);
     else this.gesture = this.moving(target, at, event);
@@ -419,16 +441,17 @@ export class Stage {
     this.hint.replaceChildren();
     const { line } = this;
     if (!line) return;
-    const [a, b] = [this.plane.flat(line.from), this.plane.flat(line.to)], display = scene.peek()?.display;
-    make("path", { class: line.guide ? "guide-line" : "new-link", d: `M${digits(a[0]!)} ${digits(a[1]!)}L${digits(b[0]!)} ${digits(b[1]!)}` }, this.hint);
+    const [a, b] = [this.paper.flat(line.from), this.paper.flat(line.to)], display = scene.peek()?.display;
+    const way = minus(line.to, line.from), unit = (this.spherical ? display?.angle : display?.length) ?? { unit: "m", factor: 1 };
+    for (const d of this.paper.paths(this.paper.line(line.from, line.to))) if (d) make("path", { class: line.guide ? "guide-line" : "new-link", d }, this.hint);
     for (const [spot, target] of [[a, line.target], [b, line.end]] as const) {
       make("circle", { class: target ? "catch" : "end", cx: spot[0]!, cy: spot[1]!, r: target ? 105 : 45 }, this.hint);
     }
-    const way = minus(line.to, line.from), factor = display?.length.factor ?? 1, unit = display?.length.unit ?? "m";
-    const right = way[0]! >= 0; // beside the end that the hand leads, away from the line
-    const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (way[1]! >= 0 ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
-    const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI;
-    label.textContent = line.guide ? withUnit(spelled(angle, 4), "°") : `${withUnit(spelled(size(way) * factor, 4), unit)} · ${withUnit(spelled(angle, 4), "°")}`;
+    const right = b[0]! >= a[0]!; // beside the end that the hand leads, away from the line
+    const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (b[1]! <= a[1]! ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
+    const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI, length = this.spherical ? arc(line.from, line.to) : size(way);
+    const measured = withUnit(spelled(length * unit.factor, 4), unit.unit);
+    label.textContent = this.spherical ? measured : line.guide ? withUnit(spelled(angle, 4), "°") : `${measured} · ${withUnit(spelled(angle, 4), "°")}`;
   }
 
   // A line that was drawn becomes a link or a guide; a place on a link becomes a point of it first.
@@ -438,7 +461,7 @@ export class Stage {
     if (!(size(way) > 0)) return;
     if (line.guide) {
       const point = line.target?.kind === "point" ? line.target.name : undefined;
-      const answer = await edit({ do: "add_guide", at: line.from, direction: way, ...(point ? { point } : {}) });
+      const answer = await edit({ do: "add_guide", at: line.from, ...(this.spherical ? { to: line.to } : { direction: way }), ...(point ? { point } : {}) });
       this.select(answer, "guides");
       return;
     }
@@ -463,9 +486,9 @@ export class Stage {
   }
 
   private double(event: MouseEvent): void {
-    if (this.spherical || !(mode.value === "draw" || mode.value === "edit")) return;
+    if (!(mode.value === "draw" || mode.value === "edit")) return;
     const at = this.at(event), target = this.target(at);
-    if (target?.kind === "link") void this.addPoint(target.name, this.plane.back(at));
+    if (target?.kind === "link") void this.addPoint(target.name, this.paper.back(at));
   }
 
   async addPoint(link: string, at: Place): Promise<void> {
@@ -506,12 +529,6 @@ export class Stage {
     return this.held(name, "move", event, target);
   }
 
-  private onSphere(target: Target | null, at: Place, event: PointerEvent): NonNullable<Stage["gesture"]> {
-    if (target?.kind === "point" && (mode.value === "move" || mode.value === "edit")) return this.held(target.name, mode.value, event);
-    const pan = this.panning(at);
-    return { ...pan, end: (moved, last) => void (moved || this.choose(target, last?.shiftKey ?? false)) };
-  }
-
   // One request is on its way; of places that come meanwhile the latest is sent when it is back.
   private held(name: string, how: "edit" | "move", event: PointerEvent, chosen: Target | null = { kind: "point", name }): NonNullable<Stage["gesture"]> {
     const begun = how === "edit" ? this.initial() : true;
@@ -521,7 +538,7 @@ export class Stage {
     const drag = new Drag(name, how, (frame) => this.follow(frame));
     const goal = (at: Place, last: { altKey: boolean } | null): Place => {
       const free = minus(at, off);
-      if (this.spherical) return this.globe.back(free, this.where().place(name));
+      if (this.spherical && how === "move") return this.globe.back(free, this.where().place(name));
       if (how === "move") return this.plane.back(free);
       const onto = this.target(free, touch, "point");
       return onto && onto.name !== name ? this.where().place(onto.name)! : this.meantFree(free, last);
@@ -553,10 +570,14 @@ export class Stage {
   }
 
   private meantFree(at: Place, event: { altKey: boolean } | null): Place {
-    const raw = this.plane.back(at);
-    if (!state.snapping.peek() || event?.altKey) return raw;
-    const step = this.step / 2;
-    return raw.map((value) => Number((Math.round(value / step) * step).toPrecision(12)));
+    return this.snapped(this.paper.back(at), event, this.step / 2);
+  }
+
+  // The nearest place of the grid: on the sphere one of round longitude and latitude.
+  private snapped(place: Place, event: { altKey: boolean } | null, step: number): Place {
+    if (!state.snapping.peek() || event?.altKey) return place;
+    const round = (value: number): number => Number((Math.round(value / step) * step).toPrecision(12));
+    return this.spherical ? fromAngles(angles(place).map(round)) : place.map(round);
   }
 
   follow(frame: Frame): void {
@@ -603,6 +624,7 @@ export class Stage {
     } else {
       batch(() => {
         this.live = null;
+        if (drag.how === "move") place.value = motion.value?.start ?? 0; // what was dropped is where the motion begins
         if (answer.text !== undefined) state.accept(answer);
       });
     }
@@ -662,10 +684,10 @@ export class Stage {
     const way = Stage.ways[event.key];
     if (event.key === " ") this.choose(target, event.shiftKey);
     else if (event.key === "Enter") {
-      if (!this.spherical && (mode.value === "draw" || mode.value === "guide") && target.kind === "point") this.anchor(target, this.where().place(target.name)!);
-      else if (!this.spherical && target.kind === "link" && mode.value !== "move") {
+      if ((mode.value === "draw" || mode.value === "guide") && target.kind === "point") this.anchor(target, this.where().place(target.name)!);
+      else if (target.kind === "link" && mode.value !== "move") {
         const points = scene.value!.links.find((one) => one.name === target.name)!.points.map((name) => this.where().place(name)).filter((one): one is Place => Boolean(one));
-        if (points.length > 1) void this.addPoint(target.name, plus(points[0]!, points[1]!).map((value) => value / 2));
+        if (points.length > 1) void this.addPoint(target.name, plus(points[0]!, points[1]!).map((value) => value / 2)); // on the sphere the server takes its direction
       } else this.choose(target, event.shiftKey);
     } else if (way && target.kind === "point" && (mode.value === "edit" || mode.value === "move")) void this.nudge(target.name, way, event.shiftKey);
     else return;
@@ -712,11 +734,12 @@ export class Stage {
 
   private showCursor(): void {
     if (!this.cursor) return;
-    const flat = this.plane.flat(this.cursor), display = scene.peek()?.display, factor = display?.length.factor ?? 1;
+    const flat = this.paper.flat(this.cursor), display = scene.peek()?.display, unit = (this.spherical ? display?.angle : display?.length) ?? { unit: "m", factor: 1 };
     this.crosshair.setAttribute("display", "inline");
     this.crosshair.setAttribute("transform", `translate(${digits(flat[0]!)} ${digits(flat[1]!)})`);
     const target = this.target(flat), name = target ? `, ${target.name}` : "";
-    tell(`x = ${withUnit(spelled(this.cursor[0]! * factor, 5), display?.length.unit)}, y = ${withUnit(spelled(this.cursor[1]! * factor, 5), display?.length.unit)}${name}`);
+    const signs = this.spherical ? "λβ" : "xy", numbers = this.spherical ? angles(this.cursor) : this.cursor;
+    tell(`${[0, 1].map((axis) => `${signs[axis]} = ${withUnit(spelled(numbers[axis]! * unit.factor, 5), unit.unit)}`).join(", ")}${name}`);
     if (this.line) {
       this.line.to = target?.kind === "point" ? this.where().place(target.name)! : this.cursor;
       this.line.end = this.line.guide ? null : target;
@@ -724,21 +747,54 @@ export class Stage {
     }
   }
 
+  // A known length over the photo, from one place of the cross to another.
+  private measureTo(at: Place): void {
+    const { line } = this;
+    if (!line) {
+      this.line = { from: at, to: at, target: null, end: null, guide: true };
+      return;
+    }
+    this.line = null;
+    this.sketch();
+    if (size(minus(at, line.from)) > 0) scalePhoto.value?.(line.from, at);
+  }
+
+  // The globe turns until a place lies well in front.
+  private follow3(place: Place): void {
+    const flat = this.globe.flat(place), off = minus(flat, this.globe.centre);
+    if (this.globe.front(place) && size(off) < 0.85 * this.globe.radius) return;
+    this.globe.turn(-0.3 * off[0]!, 0.3 * off[1]!);
+    this.view();
+  }
+
   private key(event: KeyboardEvent): void {
-    if (event.target !== this.svg || event.ctrlKey || event.metaKey) return;
+    if (event.target !== this.svg || event.metaKey) return;
     const way = Stage.ways[event.key];
-    if (way) {
-      if (this.spherical) this.globe.turn(-way[0]! * 0.08 * this.globe.radius, -way[1]! * 0.08 * this.globe.radius);
-      if (this.spherical) this.view();
-      else {
+    if (way && event.ctrlKey && !this.spherical) {
+      this.fits = false; // the view goes on that way
+      this.plane.pan([-way[0]! * 60 * U, way[1]! * 60 * U]);
+      this.view();
+    } else if (event.ctrlKey) return;
+    else if (way) {
+      if (this.spherical && mode.value === "move") {
+        this.globe.turn(-way[0]! * 0.08 * this.globe.radius, -way[1]! * 0.08 * this.globe.radius);
+        this.view();
+      } else if (this.spherical) {
+        const step = this.step * (event.shiftKey ? 5 : 1), at = angles(this.cursor ?? this.globe.view[2]).map((value) => Math.round(value / this.step) * this.step);
+        const to = this.cursor ? plus(at, way, step) : at;
+        this.cursor = fromAngles([to[0]!, Math.min(Math.PI / 2, Math.max(-Math.PI / 2, to[1]!))]);
+        this.follow3(this.cursor);
+        this.showCursor();
+      } else {
         const step = this.step * (event.shiftKey ? 5 : event.altKey ? 0.1 : 1);
         const from = this.cursor ?? this.plane.middle.map((value) => Math.round(value / this.step) * this.step);
         this.cursor = this.cursor ? from.map((value, k) => Number((value + step * way[k]!).toPrecision(12))) : from;
         this.showCursor();
       }
-    } else if ((event.key === "Enter" || event.key === " ") && this.cursor && !this.spherical) {
-      const target = this.target(this.plane.flat(this.cursor));
-      if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
+    } else if ((event.key === "Enter" || event.key === " ") && this.cursor) {
+      const target = this.target(this.paper.flat(this.cursor));
+      if (scalePhoto.value) this.measureTo(this.cursor);
+      else if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
       else this.choose(target, event.shiftKey);
     } else if (event.key === " ") {
       this.space = true;
@@ -769,8 +825,9 @@ class Drag {
   private flying = false;
   private waiting: Place | null = null;
   private over = false;
+  private drives: Record<string, number> | null = null; // of several drives: where they stand in this drag
 
-  constructor(private readonly point: string, private readonly how: "edit" | "move", private readonly shown: (frame: Frame) => void) {}
+  constructor(private readonly point: string, readonly how: "edit" | "move", private readonly shown: (frame: Frame) => void) {}
 
   to(goal: Place): void {
     this.waiting = goal;
@@ -783,7 +840,7 @@ class Drag {
 
   private request(to: Place): Record<string, unknown> & { do: string } {
     const now = motion.value;
-    return { do: "drag", digest: digest.value, mode: this.how, point: this.point, to, ...(this.how === "move" && now ? { drive: now.driveAt(place.value) } : {}) };
+    return { do: "drag", digest: digest.value, mode: this.how, point: this.point, to, ...(this.how === "move" && now ? { drive: now.driveAt(place.value) } : {}), ...(this.drives ? { drives: this.drives } : {}) };
   }
 
   private async pump(): Promise<void> {
@@ -793,7 +850,10 @@ class Drag {
       this.waiting = null;
       const answer = await ask(this.request(to), "drag");
       if (this.over) break;
-      if (isFrame(answer)) this.shown(answer);
+      if (isFrame(answer)) {
+        this.drives = answer.header.drives ?? null;
+        this.shown(answer);
+      }
       else if (answer !== SUPERSEDED && answer.error) state.refused(answer.error);
     }
     this.flying = false;

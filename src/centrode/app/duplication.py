@@ -1,0 +1,126 @@
+"""Copies beside what is chosen, and mirror images in its place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from centrode.app.edit_drags import reshaped_by
+from centrode.app.patches import Operation, Patch
+from centrode.app.sketch import Sketch, Vector
+from centrode.app.state_rows import set_ground
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.reading import two_points
+
+QUARTER = math.pi / 2
+
+
+def duplicate(patch: Patch, operation: Operation) -> None:
+    """Put copies beside what is chosen."""
+    sketch = patch.plane_sketch()
+    by = patch.place_of(operation, "by")
+    links, points = _chosen(patch, patch.objects_of(operation))
+    for point in points:
+        if point not in sketch.places:
+            raise InputError(point, _("its place is not known: correct the description first"))
+    if not patch.sketch.draws_points:
+        _duplicate_measured(patch, links, points, by)
+        return
+    new = {
+        point: patch.new_point((sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]))
+        for point in points
+    }
+    for point in points:
+        if point in sketch.fixed:
+            set_ground(patch, new[point], True)
+    for link in links:
+        _copy_link(patch, sketch, link, new)
+
+
+def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) -> None:
+    first, *rest = (new[point] for point in sketch.links[link])
+    name = patch.link_name(first, rest[0]) if len(rest) == 1 else patch.numbered_name()
+    table = dict(sketch.tables["links"][link])
+    table.pop("points", None)
+    if isinstance(table.get("centre"), str):
+        table["centre"] = new[table["centre"]]
+    points = sketch.tables["links"][link].get("points")
+    if isinstance(points, Mapping):
+        entries = {"points": {new[key]: value for key, value in points.items()}, **table}
+    else:
+        entries = table if two_points(name) else {"points": [first, *rest], **table}
+    patch.add_table(("links", name), entries)
+    patch.named.append(name)
+
+
+def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector) -> None:
+    """Copies of links with lengths and angles: each part of them hangs on a point of the frame."""
+    sketch = patch.sketch
+    anchors = [point for point in points if point in sketch.fixed]
+    # a part that no point of the frame carries gets one: everything else hangs on it by lengths and angles
+    anchors += [part[0] for part in _parts(sketch, links, points) if not set(part) & set(anchors)]
+    free = patch.free_names()
+    new = {point: next(free) for point in points}
+    patch.named += new.values()
+    for point in anchors:
+        place = sketch.places[point]
+        patch.write((("frame", "points", new[point]), patch.pair((place[0] + by[0], place[1] + by[1]))))
+    for link in links:
+        _copy_link(patch, sketch, link, new)
+        name = patch.named[-1]
+        if sketch.angle(link) is None or sketch.tables["links"][link].get("angle") is None:
+            patch.write((("links", name, "angle"), patch.angle(sketch.poses[link][1])))
+
+
+def _parts(sketch: Sketch, links: Sequence[str], points: Sequence[str]) -> list[list[str]]:
+    """Points that links join with each other, part by part."""
+    parts: list[list[str]] = [[point] for point in points]
+    for link in links:
+        joined = [part for part in parts if set(part) & set(sketch.links[link])]
+        parts = [part for part in parts if part not in joined] + [
+            [point for part in joined for point in part]
+        ]
+    return parts
+
+
+def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Links and points that are chosen; links bring their points."""
+    sketch = patch.sketch
+    links = [name for name in objects if name in sketch.links]
+    points = [point for link in links for point in sketch.links[link]]
+    points += [name for name in objects if name in sketch.points and name not in sketch.links]
+    if not points:
+        raise InputError("", _("nothing is chosen"), _("choose a point or a link"))
+    return links, list(dict.fromkeys(points))
+
+
+def mirror(patch: Patch, operation: Operation) -> None:
+    """Put what is chosen at its mirror image."""
+    sketch = patch.plane_sketch()
+    _links, points = _chosen(patch, patch.objects_of(operation))
+    known = [sketch.places[one] for one in points if one in sketch.places]
+    if len(known) < len(points):
+        raise InputError("", _("its place is not known: correct the description first"))
+    (x, y), direction = _axis(patch, operation.get("axis"), known)
+    cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
+    moved: dict[str, Vector] = {}
+    for point in points:
+        if point in sketch.marks["fixed"]:
+            raise InputError(point, _("this joint is held: switch Fixed off to drag it"))
+        u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
+        moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
+    patch.write(*reshaped_by(sketch, moved, patch.folder).assignments)
+
+
+def _axis(patch: Patch, axis: Any, places: Sequence[Vector]) -> tuple[Vector, float]:
+    """A place on the axis of a mirror, and its direction."""
+    if axis in ("x", "horizontal", "y", "vertical", None):
+        middle = tuple((min(x) + max(x)) / 2 for x in zip(*places, strict=True))
+        return middle, 0.0 if axis in ("x", "horizontal") else QUARTER
+    if isinstance(axis, list) and len(axis) == 2:
+        first, second = (patch.place_of({"axis": one}, "axis") for one in axis)
+        if first != second:
+            return first, math.atan2(second[1] - first[1], second[0] - first[0])
+    raise InputError("", _('an axis is "x", "y" or two places'))

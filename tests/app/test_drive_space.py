@@ -1,0 +1,140 @@
+"""Several drives, and drives without a law, follow a dragged point by least squares."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.app.documents import read_document
+from centrode.app.drive_space import has_free_place, initial_values, place_in_drive_space, position_at
+from centrode.app.frames import read_frame
+from centrode.app.operations import apply_operation
+from centrode.app.patches import Patch
+from centrode.app.sketch import Sketch
+from centrode.errors import InputError
+from centrode.model.examples import example_text
+
+HERE = Path()
+SEVERAL = ["five-bar-two-drives", "excavator-arm", "two-link-arm", "five-bar-pendulum", "double-pendulum"]
+
+
+def without_laws(name):
+    return re.sub(r"(?m)^(?:speed|law) = .*\n", "", example_text(name))
+
+
+def dragged(text, point, *places):
+    """Positions while the cursor passes places, one after the other."""
+    prepared = read_document(text, HERE).position
+    values, found = initial_values(prepared), []
+    for place in places:
+        found.append(place_in_drive_space(prepared, point, np.array(place), values))
+        values = found[-1].values
+    return found
+
+
+def test_the_arm_reaches_for_the_cursor_as_the_cosine_theorem_says():
+    """Two links of 0.5 m: cos(elbow) = (x^2 + y^2)/0.5 - 1; on one side of the elbow all the way."""
+    turns = np.linspace(0.2, 1.4, 13)
+    places = [(0.8 * math.cos(turn), 0.6 * math.sin(turn)) for turn in turns]
+    found = dragged(example_text("two-link-arm"), "B", *places)
+    side = np.sign(found[0].values["AB"])
+    for place, position in zip(places, found, strict=True):
+        elbow = side * math.acos((place[0] ** 2 + place[1] ** 2) / 0.5 - 1.0)
+        first = math.atan2(place[1], place[0]) - elbow / 2
+        assert position.points["B"] == pytest.approx(place, abs=1e-9)
+        assert position.values == pytest.approx({"OA": first, "AB": elbow}, abs=1e-8)
+
+
+def test_out_of_reach_the_arm_points_at_the_cursor():
+    places = [(0.9 * math.cos(turn), 0.9 * math.sin(turn)) for turn in np.linspace(0.1, 1.0, 7)]
+    last = dragged(example_text("two-link-arm"), "B", *places, (3 * math.cos(1.0), 3 * math.sin(1.0)))[-1]
+    assert last.points["B"] == pytest.approx((math.cos(1.0), math.sin(1.0)), abs=1e-6)
+
+
+def test_three_drives_move_least():
+    """Of all ways to bring the tip to a place near by, that of the least change of the drives, each in its own unit."""
+    text = example_text("excavator-arm")
+    prepared = read_document(text, HERE).position
+    begin = position_at(prepared, initial_values(prepared))
+    goal = begin.points["T"] + np.array([1e-4, -2e-4])
+    position = place_in_drive_space(prepared, "T", goal, begin.values)
+    assert position.points["T"] == pytest.approx(goal, abs=1e-12)
+    change = np.array([position.values[name] - begin.values[name] for name in begin.values])
+    least = np.linalg.pinv(begin.slopes["T"].T) @ (goal - begin.points["T"])
+    assert change == pytest.approx(least, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_derivatives_by_the_drives_are_those_of_the_positions(name):
+    """Central differences; what is dropped stands there in the motion of the file that is written."""
+    text = example_text(name)
+    prepared = read_document(text, HERE).position
+    begin = position_at(prepared, initial_values(prepared))
+    step = 1e-5
+    for k, drive in enumerate(begin.values):
+        ends = [
+            position_at(prepared, {**begin.values, drive: begin.values[drive] + sign * step})
+            for sign in (1, -1)
+        ]
+        for point in begin.points:
+            difference = (ends[0].points[point] - ends[1].points[point]) / (2 * step)
+            scale = 1.0 + np.abs(difference).max()
+            assert begin.slopes[point][k] == pytest.approx(difference, abs=1e-7 * scale)
+    point = prepared.mechanism.moving_points[-1]
+    size = Sketch(read_document(text, HERE)).size
+    there = place_in_drive_space(prepared, point, begin.points[point] + 0.03 * size, begin.values)
+    patch = Patch(text, HERE)
+    apply_operation(patch, {"do": "set_starts", "drives": there.values})
+    mechanism = ct.parse_mechanism(patch.text)
+    start = ct.motion(mechanism, at=[0.0]).position.isel(sample=0)
+    for name_of_point, place in there.points.items():
+        assert start.sel(point=name_of_point).values == pytest.approx(place, abs=2e-4 * size)
+
+
+def test_a_drive_without_a_law_is_moved_by_hand_and_simulated(ask):
+    text = without_laws("five-bar-pendulum")
+    answer = ask("read", text=text)
+    assert "free coordinate" in answer["problems"][0]["message"]
+    scene = answer["scene"]
+    assert all(point["at"] for point in scene["points"])
+    assert [name for name, there in scene["topics"].items() if there is True] == ["simulate"]
+    assert all(point["handles"]["move"] for point in scene["points"] if point["kind"] != "fixed")
+    by_laws = ask("read", text=example_text("five-bar-pendulum"))["scene"]
+    assert [one["at"] for one in scene["points"]] == [one["at"] for one in by_laws["points"]]
+    moving = ask("drag", text=text, mode="move", point="C", to=[0.25, 0.55])
+    header, arrays = read_frame(moving)
+    names = [point["name"] for point in scene["points"]]
+    assert arrays["points"][names.index("C")] == pytest.approx([0.25, 0.55], abs=1e-6)
+    again = read_frame(
+        ask("drag", text=text, mode="move", point="C", to=[0.25, 0.55], drives=header["drives"])
+    )
+    assert again[0]["drives"] == pytest.approx(header["drives"], abs=1e-9)
+    dropped = ask("drag", text=text, mode="move", point="C", to=[0.25, 0.55], drop=True)
+    place = next(one["at"] for one in dropped["scene"]["points"] if one["name"] == "C")
+    assert place == pytest.approx([0.25, 0.55], abs=1e-4)
+    assert "blocks" in ask("panel", text=text, topic="simulate", samples=9)
+
+
+def test_one_crank_without_a_speed_follows_the_cursor_too():
+    text = without_laws("crank-rocker")
+    assert has_free_place(read_document(text, HERE))
+    assert not has_free_place(read_document(example_text("crank-rocker"), HERE))
+    for turn in (0.3, 1.2, 2.9):
+        steps = [(2 * math.cos(a), 2 * math.sin(a)) for a in np.linspace(0.0, turn, 9)[1:]]
+        position = dragged(text, "A", *steps)[-1]
+        assert position.points["A"] == pytest.approx((math.cos(turn), math.sin(turn)), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "drives", [None, {}, {"OA": 0.0}, {"OA": 0.0, "EC": math.nan}, {"OA": 0.0, "EC": "x"}]
+)
+def test_starts_that_are_none_are_refused(drives):
+    patch = Patch(example_text("five-bar-two-drives"), HERE)
+    with pytest.raises(InputError):
+        apply_operation(patch, {"do": "set_starts", "drives": drives})
+    assert patch.text == example_text("five-bar-two-drives")
