@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import importlib
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import ModuleType
 from typing import ParamSpec, TypeVar
 
 from centrode.errors import InputError
@@ -43,3 +47,32 @@ def how_to_install(*extras: str) -> str:
         len(extras),
     )
     return repair.format(extras=",".join(extras))
+
+
+# Libraries that another one imports wherever they are installed, whether they are used or not.
+
+
+@contextmanager
+def held_back(library: str) -> Iterator[None]:
+    """While the block runs, a library that is not imported yet counts as not installed, until it is `admitted`."""
+    if library in sys.modules:
+        yield
+        return
+    # the import system takes None for a library that there is none of
+    sys.modules[library] = None  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        _forget_absence(library)
+
+
+def admitted(name: str, *held: str) -> ModuleType:
+    """A module, for which libraries that are held back are let in again."""
+    for library in held:
+        _forget_absence(library)
+    return importlib.import_module(name)
+
+
+def _forget_absence(library: str) -> None:
+    if sys.modules.get(library, library) is None:
+        del sys.modules[library]

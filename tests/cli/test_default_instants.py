@@ -66,6 +66,7 @@ length = "mm"
         ("centres", "six-bar-press", "the instants of [study]: 120 deg"),
         ("diagrams", "crank-rocker", "the initial position: 0 rad"),
         # the value of a drive by a law may come again: an instant is a time
+        ("diagrams", "cam-driven-linkage", "the instants of [study]: 0.04 s, 0.24 s"),
         ("diagrams", "wiper", "the initial position: 0 s"),
     ],
 )
@@ -74,8 +75,8 @@ def test_the_instants_that_are_taken_are_told(
 ) -> None:
     done = centrode(command, name, "--no-figures", "--out", "left-out")
     assert (done.code, done.err) == (0, f"without --at, {told}\n")
-    value = told.rpartition(": ")[2]
-    named = centrode(command, name, "--no-figures", "--out", "named", "--at", value)
+    instants = [word for value in told.rpartition(": ")[2].split(", ") for word in ("--at", value)]
+    named = centrode(command, name, "--no-figures", "--out", "named", *instants)
     assert (named.code, named.err) == (0, "")
     assert named.out.replace("named:", "left-out:") == done.out
 

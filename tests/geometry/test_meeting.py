@@ -9,9 +9,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from centrode.geometry.in_plane import PLANE
 from centrode.geometry.intersections import meet_circle_and_line, meet_circles, meet_circles_on_sphere
+from centrode.geometry.on_sphere import SPHERE, SphereCircle
 from centrode.geometry.plane import Line, PlaneCircle
+from centrode.geometry.sphere import half, unit_vector
+from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
+from centrode.numerics.graphs import Graph, gradient
 from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.scans import evaluate
 from samples import few
 
 ORDER = 5
@@ -207,3 +213,50 @@ def test_touching_circles_have_no_finite_velocity() -> None:
         moves = meet_circles(PlaneCircle(centre, 2.0), PlaneCircle((5.0, 0.0), 3.0), JetFunctions(np).sqrt)
     assert [float(x.value) for x in moves] == [2.0, 0.0]
     assert not all(np.isfinite(x.coefficients[1]) for x in moves)
+
+
+@pytest.mark.parametrize("space", ["two circles", "a circle and a line", "the sphere"])
+@pytest.mark.parametrize("seed", range(4))
+def test_implied_places_have_the_derivatives_of_closed_forms(space: str, seed: int) -> None:
+    """By every number of the loci: what is held gives no derivatives, and nothing else is left out."""
+    random = np.random.default_rng(seed)
+    count = {"two circles": 6, "a circle and a line": 6, "the sphere": 8}[space]
+    names = [variable(f"x{k}") for k in range(count)]
+    held: dict[str, Node] = {}
+
+    def hold(number: Any) -> Any:
+        name = f"held {len(held)}"
+        held[name] = as_node(number)
+        return variable(name)
+
+    def root(radicand: Any) -> Any:
+        return roots.setdefault("", m.sqrt(radicand) * (1.0 if seed % 2 else -1.0))
+
+    m, roots = EXPRESSIONS, {}
+    if space == "the sphere":
+        # unit vectors by longitude and latitude, and half arcs by arcs
+        longitude, latitude = random.uniform(-1, 1, 2), random.uniform(-0.5, 0.5, 2)
+        values = [longitude[0], latitude[0], 0.9, longitude[0] + 0.7, latitude[1], 0.8, 1.0, 1.0]
+        circles = [
+            SphereCircle(unit_vector(m, (names[k], names[k + 1])), half(m, names[k + 2] * names[6 + k // 3]))
+            for k in (0, 3)
+        ]
+        place = SPHERE.meet(*circles, root, lambda x: x)
+        implied = SPHERE.implied_place(*circles, place, roots[""], hold)
+    else:
+        one = PlaneCircle((names[0], names[1]), names[2])
+        if space == "two circles":
+            values = [*random.uniform(-0.3, 0.3, 2), 1.2, *random.uniform(0.7, 1.0, 2), 0.9]
+            other: Any = PlaneCircle((names[3], names[4]), names[5])
+        else:
+            values = [*random.uniform(-0.3, 0.3, 2), 1.2, *random.uniform(-0.3, 0.3, 3)]
+            other = Line((names[3], names[4]), (m.cos(names[5]), m.sin(names[5])))
+        place = PLANE.meet(one, other, root, lambda x: x)
+        implied = PLANE.implied_place(one, other, place, roots[""], hold)
+    at = dict(zip((str(x.detail) for x in names), map(float, values), strict=True))
+    for closed, other in zip(place, implied, strict=True):
+        expected = Graph.of(dict(zip(at, gradient(closed, names), strict=True)))
+        found = Graph.of(dict(zip(at, gradient(other, names), strict=True))).substitute(held)
+        for name, slope in evaluate(expected, at).items():
+            # sines of the triangles are above 0.2: some fifty operations round once
+            assert abs(evaluate(found, at)[name] - slope) <= 50 * EPS * max(1.0, abs(slope)) / 0.2**2, name

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -60,3 +61,40 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
     text = "import sys, centrode; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", text], capture_output=True, encoding="utf-8", check=True)
     assert not {module.split(".")[0] for module in done.stdout.split()} & (HEAVY | {"pydantic", "click"})
+
+
+def test_a_command_leaves_the_library_of_chunked_arrays_aside(tmp_path: Path) -> None:
+    """Where dask is installed xarray imports it at its first array: a fifth of a short command's time."""
+    pytest.importorskip("dask")
+    text = """
+import json, sys
+from centrode.cli.main import main
+sys.argv[1:] = ["run", "crank-rocker", "--no-figures", "--out", "out"]
+code = main()
+print(json.dumps([code, "dask.array" in sys.modules, "dask" in sys.modules, "xarray" in sys.modules]), file=sys.stderr)
+import dask.array
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", text], capture_output=True, encoding="utf-8", check=True, cwd=tmp_path
+    )
+    assert json.loads(done.stderr.splitlines()[-1]) == [0, False, False, True]
+
+
+def test_a_library_that_is_held_back_is_let_in_again() -> None:
+    text = """
+import sys
+from centrode.optional_packages import admitted, held_back
+with held_back("wave"):
+    try:
+        import wave
+    except ModuleNotFoundError:
+        print("absent")
+    print(admitted("wave", "wave").__name__, "wave" in sys.modules)
+with held_back("wave"):
+    import wave
+with held_back("colorsys"):
+    pass
+import colorsys
+"""
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, encoding="utf-8", check=True)
+    assert done.stdout.split() == ["absent", "wave", "True"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,9 @@ import pytest
 
 import centrode as ct
 from centrode.numerics import machine_code
-from centrode.sweeps.folds import Slopes, States
+from centrode.sweeps import sweep_plans
+from centrode.sweeps.folds import Fold, Slopes, States
+from centrode.sweeps.kept_plans import KeptValues
 from centrode.sweeps.sweep import read_sweep
 from drives import five_bar
 from mechanisms import EPS, four_bar
@@ -172,35 +176,60 @@ def test_what_has_no_derivatives_is_refused(tmp_path: Path) -> None:
         read_sweep(study)
 
 
-def test_both_ways_to_carry_a_sum_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the values at paths, and by the parts of the formula that stand: the sphere by six takes the latter."""
-    mechanism, samples, lanes = ct.example("spherical-four-bar"), 19, np.array([-0.01, 0.0, 0.01])
-    paths = [f"links.{link}.length" for link in ("AB", "BC", "DC")]
-    paths += [f"frame.points.{x}" for x in ("D.longitude", "D.latitude", "A.longitude")]
-    vary = {path: ct.value_at(mechanism, path) + k * lanes for k, path in enumerate(paths, 1)}
-    chosen: list[int] = []
+SIX = {
+    "crank-rocker": (
+        "links.OA.length", "links.AB.length", "links.DB.length", "frame.points.D.x", "frame.points.D.y",
+        "frame.points.O.x",
+    ),
+    "slider-crank-offset": (
+        "links.OA.length", "links.AB.length", "guides.B.through.y", "guides.B.direction", "frame.points.O.x",
+        "frame.points.O.y",
+    ),
+    "spherical-four-bar": (
+        "links.AB.length", "links.BC.length", "links.DC.length", "frame.points.D.longitude",
+        "frame.points.D.latitude", "frame.points.A.longitude",
+    ),
+}  # fmt: skip
 
-    def watched(self: Slopes, name: str) -> States:
-        states = states_of(self, name)
-        chosen.append(len(states.parts))
-        return states
 
-    def computed() -> np.ndarray:
+@pytest.mark.parametrize(("name", "point"), [
+    ("crank-rocker", "B"), ("slider-crank-offset", "B"), ("spherical-four-bar", "C"),
+])  # fmt: skip
+def test_ways_to_carry_a_sum_agree(name: str, point: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By paths from closed forms; from implicit functions by paths, by standing parts and by what moves."""
+    mechanism, samples, lanes = ct.example(name), 19, np.array([-0.01, 0.0, 0.01])
+    vary = {path: ct.value_at(mechanism, path) + k * lanes for k, path in enumerate(SIX[name], 1)}
+
+    def computed(way: Callable[[Slopes, list[Fold]], dict[str, States]]) -> np.ndarray:
+        used = []
+
+        def of_sums(self: Slopes, depth: int) -> dict[str, States]:
+            used.append(way(self, list(self.folds.at_depth(depth))))
+            return used[-1]
+
+        monkeypatch.setattr(Slopes, "_of_sums", of_sums)
+        monkeypatch.setattr(sweep_plans, "_plans", KeptValues(1))
         found = ct.sweep(
-            mechanism, vary, "position.C", samples, reduce="mean", gradient=True, executor="arrays"
+            mechanism, vary, f"position.{point}", samples, reduce="mean", gradient=True, executor="arrays"
         )
-        return found["gradient.position.C"].values
+        assert used
+        return found[f"gradient.position.{point}"].values
 
-    states_of = Slopes.states_of
-    monkeypatch.setattr(Slopes, "states_of", watched)
-    by_parts = computed()
-    assert max(chosen) > len(paths)
-    monkeypatch.setattr(Slopes, "_by_parts", Slopes._by_paths)
-    by_paths = computed()
-    assert np.abs(by_paths).max() > 0.1
-    # the arcs are of the order of 1, the least sine is that of the crank: each of some hundred operations rounds once
-    allowed = 200 * EPS * max(1.0, np.abs(by_paths).max()) / np.sin(ct.value_at(mechanism, paths[0]))
-    np.testing.assert_allclose(by_parts, by_paths, rtol=0.0, atol=allowed)
+    def by_closed_forms(self: Slopes, folds: list[Fold]) -> dict[str, States]:
+        assert self.implied is not None and self.implied.places
+        closed = replace(self, implied=None)
+        return {fold.name: closed._by_paths(fold) for fold in folds}
+
+    expected = computed(by_closed_forms)
+    assert np.abs(expected).max() > 0.1
+    # sizes are of the order of 1 to 4, the least sine between arms 0.2: each of some hundred operations rounds once
+    allowed = 200 * EPS * max(1.0, np.abs(expected).max()) / 0.2
+    for way in (
+        lambda self, folds: {fold.name: self._by_paths(fold) for fold in folds},
+        lambda self, folds: {fold.name: self._by_parts(fold) for fold in folds},
+        Slopes._by_forms,
+    ):
+        np.testing.assert_allclose(computed(way), expected, rtol=0.0, atol=allowed)
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)

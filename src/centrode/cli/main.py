@@ -13,7 +13,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from types import FrameType
 from typing import Any
 
@@ -40,6 +40,7 @@ from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.files.inputs import guard_inputs
 from centrode.locale import _, choose_language_of_process, mark
+from centrode.optional_packages import held_back
 from centrode.topics import order
 from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
@@ -105,6 +106,8 @@ def build_app() -> click.Command:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; every failure ends in a message, none in a traceback."""
+    # where another program calls this, the process and its libraries are not ours
+    ours = arguments is None
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     for stream in (sys.stdout, sys.stderr):
         # A terminal without Cyrillic shows question marks instead of failing.
@@ -113,7 +116,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(errors="replace")
     choose_language_of_process(wished_language(arguments))
     try:
-        with _termination_as_interruption(), _rare_collection():
+        # xarray imports dask at its first array, which takes a short command a fifth of its time; workers admit it
+        with _termination_as_interruption(), _rare_collection(), held_back("dask") if ours else nullcontext():
             result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()

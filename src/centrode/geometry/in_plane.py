@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from centrode.geometry import plane
-from centrode.geometry.intersections import meet_circle_and_line, meet_circles
+from centrode.geometry.intersections import Hold, implied_meeting, meet_circle_and_line, meet_circles
 from centrode.geometry.plane import (
     AT_REST,
     Line,
@@ -111,6 +111,16 @@ class Plane:
         if isinstance(other, PlaneCircle):
             return meet_circles(one, other, root)
         return meet_circle_and_line(one, other, root)
+
+    def implied_place(
+        self,
+        one: PlaneCircle | Line,
+        other: PlaneCircle | Line,
+        place: Vector,
+        root: Number,
+        hold: Hold,
+    ) -> Vector | None:
+        return None if isinstance(one, Line) else implied_meeting(one, other, place, root, hold)
 
     def lack(
         self, m: Namespace, one: PlaneCircle | Line, other: PlaneCircle | Line

@@ -43,6 +43,9 @@ class MovingLocus(Protocol):
     def gradient(self) -> Place:
         """Gradient of the locus by the coordinates of the point, the factor of each of its coefficients."""
 
+    def motion(self, hold: Hold) -> Number:
+        """A number whose derivatives are those of the point, multiplied by the gradient; its value says nothing."""
+
     def next(self, k: int) -> Number:
         """The gradient multiplied by the point's k-th coefficient, those before being known."""
 
@@ -67,6 +70,11 @@ class AtDistance:
         self.centre, self.squared = centre, squared
         self.arm = [apart(place, values(centre))]
         self.gradient = self.arm[0]
+
+    def motion(self, hold: Hold) -> Number:
+        # of arm . arm = distance^2: arm . dx = arm . dc + d(distance^2) / 2
+        arm = tuple(map(hold, self.gradient))
+        return total((dot(arm, values(self.centre)), times(0.5, value(self.squared))))
 
     def next(self, k: int) -> Number:
         # half the k-th coefficient of arm . arm: its outer terms are the gradient's, the inner ones are known
@@ -100,6 +108,11 @@ class OnLine:
         self.through, self.direction = through, direction
         self.arm = [apart(place, values(through))]
         self.gradient = self._normal(0)
+
+    def motion(self, hold: Hold) -> Number:
+        # of n . arm = 0: n . dx = n . dt - dn . arm
+        normal, arm = tuple(map(hold, self.gradient)), tuple(map(hold, self.arm[0]))
+        return less(dot(normal, values(self.through)), dot(self.gradient, arm))
 
     def next(self, k: int) -> Number:
         known = dot(self.gradient, coefficients(self.through, k))
@@ -246,10 +259,10 @@ def meet_circles(one: PlaneCircle, other: PlaneCircle, root: Root) -> Vector:
         return circles_meet(one, other, signed)
     # the place is found from values alone; all derivatives follow from the linear equations
     place = circles_meet(_circle(one), _circle(other), value(signed))
-    loci = [AtDistance(locus.centre, locus.radius * locus.radius, place) for locus in (one, other)]
+    loci = [_moving_locus(locus, place) for locus in (one, other)]
     # the cross product of the arms is half the root
-    inverse = 2.0 / value(signed)
-    x, y = place_series(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    inverse, gradients = 2.0 / value(signed), [locus.gradient for locus in loci]
+    x, y = place_series(place, loci, lambda known: _in_plane(gradients, known, inverse), radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
         # half the root at its least bounds the cross product of the arms
@@ -267,12 +280,10 @@ def meet_circle_and_line(one: PlaneCircle, other: Line, root: Root) -> Vector:
         return circle_meets_line(one, other, signed)
     line = Line(_vector(other.through), _vector(other.direction))
     place = circle_meets_line(_circle(one), line, value(signed))
-    loci = (
-        AtDistance(one.centre, one.radius * one.radius, place), OnLine(other.through, other.direction, place)
-    )  # fmt: skip
+    loci = [_moving_locus(locus, place) for locus in (one, other)]
     # the cross product of the arm and the line's normal is the way from the foot
-    inverse = 1.0 / value(signed)
-    x, y = place_series(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    inverse, gradients = 1.0 / value(signed), [locus.gradient for locus in loci]
+    x, y = place_series(place, loci, lambda known: _in_plane(gradients, known, inverse), radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
         x, y = bound_acceleration((x, y), loci, _across(loci, cells), cells.m.sqrt(radicand.least), cells)
@@ -295,29 +306,14 @@ def meet_circles_on_sphere(
         (values(centre), values(half)) for centre, half in ((centre_1, half_1), (centre_2, half_2))
     )
     place = sphere.circles_meet(at_1, arc_1, at_2, arc_2, value(signed))
-    # chords are differences of places, so small linkages keep their relative accuracy
-    one, other = (
-        AtDistance(centre, 4.0 * half[0] * half[0], place)
-        for centre, half in ((centre_1, half_1), (centre_2, half_2))
-    )
+    one, other = _about_chord(centre_1, half_1, place), _about_chord(centre_2, half_2, place)
     # the place stays a unit vector: the third equation
     unit = AtDistance((0.0, 0.0, 0.0), 1.0, place)
     # the triple product of both chords and the place is that of the three places: the root
-    inverse = 1.0 / value(signed)
-    towards = (
-        sphere.cross(other.gradient, place),
-        sphere.cross(place, one.gradient),
-        sphere.cross(one.gradient, other.gradient),
+    inverse, gradients = 1.0 / value(signed), (one.gradient, other.gradient)
+    x, y, z = place_series(
+        place, (one, other, unit), lambda known: _on_sphere(gradients, place, known, inverse), radicand.order
     )
-
-    def solve_products(known: Sequence[Number]) -> Place:
-        shares = [times(inverse, x) for x in known]
-        return [
-            total(times(share, way[axis]) for share, way in zip(shares, towards, strict=True))
-            for axis in range(3)
-        ]
-
-    x, y, z = place_series(place, (one, other, unit), solve_products, radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
         across = _across((one, other), cells)
@@ -327,21 +323,93 @@ def meet_circles_on_sphere(
     return x, y, z
 
 
+# Meeting points as implicit functions of their loci: formulas that have the derivatives of a meeting point.
+#
+# What a locus says of the derivatives of a point is linear in them, and so is the answer: a way for each locus, times
+# the motion of that. Ways are held, and what is left are a few products in place of the derivatives of the closed
+# form. Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), section 15.1.
+
+Hold: TypeAlias = Callable[[Number], Number]
+"""Gives a number as one without derivatives."""
+
+
+def implied_meeting(
+    one: PlaneCircle, other: PlaneCircle | Line, place: Vector, root: Number, hold: Hold
+) -> Vector:
+    """Where a circle meets another locus in the plane, as an implicit function of both; see `Space.implied_place`."""
+    loci = [_moving_locus(locus, place) for locus in (one, other)]
+    (a, b), (c, d) = (locus.gradient for locus in loci)
+    # half the cross product of the gradients is the root of two circles, of a circle and a line it is the root itself
+    inverse = (1.0 if isinstance(other, Line) else 2.0) / root
+    ways = (
+        (times(inverse, d), times(inverse, less(0.0, c))),
+        (times(inverse, less(0.0, b)), times(inverse, a)),
+    )
+    x, y = _moved(place, loci, ways, hold)
+    return x, y
+
+
+def implied_meeting_on_sphere(
+    circles: Sequence[tuple[sphere.Vector, sphere.HalfArc]], place: sphere.Vector, root: Number, hold: Hold
+) -> sphere.Vector:
+    """Where two circles meet on the sphere, as an implicit function of both; see `Space.implied_place`."""
+    loci = [_about_chord(*circle, place) for circle in circles]
+    # the third equation, that the place is a unit vector, depends on no locus
+    longer = sphere.times(1.0 / root, place)
+    a, b = (locus.gradient for locus in loci)
+    x, y, z = _moved(place, loci, (sphere.cross(b, longer), sphere.cross(longer, a)), hold)
+    return x, y, z
+
+
+def _moved(place: Place, loci: Sequence[AtDistance | OnLine], ways: Sequence[Place], hold: Hold) -> Place:
+    """A number for each axis of a place, with its derivatives: along a way for each locus, by the motion of this."""
+    moved = [hold(x) for x in place]
+    for locus, way in zip(loci, ways, strict=True):
+        motion = locus.motion(hold)
+        moved = [x + hold(y) * motion for x, y in zip(moved, way, strict=True)]
+    return moved
+
+
+def _moving_locus(locus: PlaneCircle | Line, place: Place) -> AtDistance | OnLine:
+    if isinstance(locus, Line):
+        return OnLine(locus.through, locus.direction, place)
+    return AtDistance(locus.centre, locus.radius * locus.radius, place)
+
+
+def _about_chord(centre: sphere.Vector, half: sphere.HalfArc, place: Place) -> AtDistance:
+    # chords are differences of places, so small linkages keep their relative accuracy
+    return AtDistance(centre, 4.0 * half[0] * half[0], place)
+
+
 def _across(loci: Sequence[AtDistance | OnLine], cells: Cells) -> tuple[Number, Number]:
     """Reach of each of two loci over a cell: bound on the shift it gives, by the length of the other's gradient."""
     one, other = (locus.reach(cells) for locus in loci)
     return other, one
 
 
-def _in_plane(loci: Sequence[AtDistance | OnLine], known: Sequence[Number], inverse: Number) -> Vector:
+def _in_plane(gradients: Sequence[Place], known: Sequence[Number], inverse: Number) -> Vector:
     """The vector whose products with two gradients are known; `inverse` is that of their cross product."""
-    a, b = (locus.gradient for locus in loci)
+    a, b = gradients
     of_first, of_second = (times(inverse, x) for x in known)
     return (
         # Cramer's rule for two products
         less(times(of_first, b[1]), times(of_second, a[1])),
         less(times(of_second, a[0]), times(of_first, b[0])),
     )
+
+
+def _on_sphere(
+    gradients: Sequence[Any], place: sphere.Vector, known: Sequence[Number], inverse: Number
+) -> sphere.Vector:
+    """The vector whose products with two gradients and the place are known; `inverse` of their triple product."""
+    a, b = gradients
+    towards = sphere.cross(b, place), sphere.cross(place, a), sphere.cross(a, b)
+    shares = [times(inverse, x) for x in known]
+    x, y, z = (
+        total(times(share, way[axis]) for share, way in zip(shares, towards, strict=True))
+        for axis in range(3)
+    )
+    return x, y, z
 
 
 def _vector(vector: Vector) -> Vector:

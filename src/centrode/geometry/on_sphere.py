@@ -7,7 +7,7 @@ from math import atan2, tau
 from typing import NamedTuple
 
 from centrode.geometry import sphere
-from centrode.geometry.intersections import meet_circles_on_sphere
+from centrode.geometry.intersections import Hold, implied_meeting_on_sphere, meet_circles_on_sphere
 from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
 from centrode.geometry.sphere import (
     AT_REST,
@@ -149,6 +149,18 @@ class Sphere:
             if sphere.is_literal(locus.half[0], 0.0):
                 return locus.centre  # a stop is a place already
         return meet_circles_on_sphere(one.centre, one.half, other.centre, other.half, root)
+
+    def implied_place(
+        self,
+        one: SphereCircle,
+        other: SphereCircle,
+        place: Vector,
+        root: Number,
+        hold: Hold,
+    ) -> Vector | None:
+        if any(sphere.is_literal(locus.half[0], 0.0) for locus in (one, other)):
+            return None
+        return implied_meeting_on_sphere((one, other), place, root, hold)
 
     def lack(self, m: Namespace, one: SphereCircle, other: SphereCircle) -> tuple[float, float, float, float]:
         apart = float(self.distance(m, one.centre, other.centre))

@@ -128,6 +128,15 @@ class Space(Protocol):
     def meet(self, one: Locus, other: Locus, root: Root, divisor: Root) -> Place:
         """Where two loci meet; circles of links stand first."""
 
+    def implied_place(
+        self, one: Locus, other: Locus, place: Place, root: Number, hold: Callable[[Number], Number]
+    ) -> Place | None:
+        """A number for each axis that has the derivatives of the place where two loci meet, as an implicit function.
+
+        They are those of `meet` in fewer operations; the values of the numbers say nothing. `hold` gives a number as
+        one without derivatives, `root` is the signed root that `meet` was given. None where no root decides.
+        """
+
     def lack(self, m: Namespace, one: Locus, other: Locus) -> tuple[float, float, float, float]:
         """By how much two loci fail to meet, positive for the reason.
 

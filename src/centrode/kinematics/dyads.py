@@ -323,6 +323,9 @@ class Choices(Protocol):
     def divisor(self, divisor: Number) -> Number:
         """A number that is divided by, as it is: its zero is a place the group cannot pass."""
 
+    def take_meeting(self, one: Any, other: Any, place: Any) -> None:
+        """Hook that is called with two loci and the place where they meet."""
+
     def continue_angle(self, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
 
@@ -434,6 +437,7 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices
     arms = _arms(group, numbers, rotor)
     one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
     vector = numbers.space.meet(one, other, choices.root, choices.divisor)
+    choices.take_meeting(one, other, vector)
     if group.carriage is not None and rotor is not None:
         at.poses[group.carriage] = PlanePose(vector, rotor)
     for point in group.points:

@@ -43,6 +43,9 @@ class EvaluationPolicy:
         """Add what a group of higher class gives."""
         raise NotImplementedError
 
+    def take_meeting(self, group: int, one: Any, other: Any, place: Any) -> None:
+        """Hook that is called with the two loci of a group and the place where they meet."""
+
     def after(self, group: int, at: Positions) -> None:
         """Hook that is called after a group is solved."""
 
@@ -78,6 +81,10 @@ class SideChoices:
     def divisor(self, divisor: Number) -> Number:
         """A number that the group divides by."""
         return self.hooks.divisor(self.group, divisor)
+
+    def take_meeting(self, one: Any, other: Any, place: Any) -> None:
+        """Hook that is called with the two loci of the group and the place where they meet."""
+        self.hooks.take_meeting(self.group, one, other, place)
 
     def continue_angle(self, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""

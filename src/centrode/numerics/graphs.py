@@ -224,6 +224,11 @@ def directional_derivatives(
     return [[change.get(x, 0.0) for x in outputs] for change in changes]
 
 
+def partial_derivatives(node: Node) -> tuple[Operand | None, ...]:
+    """Partial derivative of an operation by each argument: None by a condition, a condition where it is 1 or 0."""
+    return _RULES[node.operation](node, *node.arguments)
+
+
 def _dependent_nodes(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
     """Nodes that depend on one of the variables."""
     needed = set(variables)

@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
-from centrode.kinematics.machine_code.trace import Traced, Untraceable
+from centrode.kinematics.machine_code.trace import ImpliedPlaces, Traced, Untraceable
 from centrode.kinematics.machine_code.variables import Varied
 from centrode.locale import mark
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
+from centrode.numerics.linear_forms import ONE, StandingFactors
 from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.scans import Reduction
 from centrode.structure.gearing import Straight
@@ -152,6 +154,7 @@ class Slopes:
     moving : variables that differ from sample to sample
     inputs : those of them that are the same for all mechanisms; with these the derivatives of an extreme are computed
         once a mechanism, at its sample, if nothing else moves
+    implied : places of the plan as implicit functions, which are differentiated in place of the closed forms
     known : fold -> its states, once they have been requested
     """
 
@@ -160,6 +163,7 @@ class Slopes:
     folds: Folds
     moving: frozenset[str]
     inputs: frozenset[str] = frozenset()
+    implied: ImpliedPlaces | None = None
     known: dict[str, States] = field(default_factory=dict)
 
     @classmethod
@@ -174,7 +178,7 @@ class Slopes:
     ) -> Slopes:
         """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
         through = {path: _through(path, varied) for path in paths}
-        return cls(through, traced.standing, folds, moving, inputs)
+        return cls(through, traced.standing, folds, moving, inputs, traced.implied)
 
     def of_node(self, node: Node) -> dict[str, Node]:
         # what jumps, or was found by iteration, is put aside as a variable: it has no derivative
@@ -196,7 +200,7 @@ class Slopes:
                 # passed
                 total = total + part * self.states_of(name).at_end[path]
             slopes[path] = total
-        return dict(Graph.of(slopes).substitute(self.standing).outputs)
+        return dict(self._with_closed_forms(Graph.of(slopes)).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
@@ -213,12 +217,50 @@ class Slopes:
         """States by which a scan carries the derivatives of a fold of this name: those with less work at a sample."""
         if name not in self.known:
             fold = next(fold for fold in self.folds.found.values() if fold.name == name)
-            by_paths = self._by_paths(fold)
             if fold.kind == "sum":
-                self.known[name] = min(by_paths, self._by_parts(fold), key=self._work)
+                self.known.update(self._of_sums(fold.depth))
             else:
+                by_paths = self._by_paths(fold)
                 self.known[name] = self._at_sample(fold, by_paths) or by_paths
         return self.known[name]
+
+    def _of_sums(self, depth: int) -> dict[str, States]:
+        """States of all sums of one pass: what they have in common is computed once."""
+        sums = [fold for fold in self.folds.at_depth(depth) if fold.kind == "sum"]
+        ways = [{fold.name: min(self._by_paths(fold), self._by_parts(fold), key=self._work) for fold in sums}]
+        if not depth:
+            ways.append(self._by_forms(sums))
+        return min(ways, key=lambda states: self._work(*states.values()))
+
+    def _by_forms(self, sums: Sequence[Fold]) -> dict[str, States]:
+        """A state for what moves in the derivatives in the direction of each path; several may have it in common."""
+        still = [self._without_standing(fold.value) for fold in sums]
+        directions = [{as_node(x): factor for x, factor in through} for through in self.through.values()]
+        factors = StandingFactors(self.moving)
+        forms = factors.derivatives(still, directions, self._with_closed_forms)
+        found: dict[str, States] = {}
+        for k, fold in enumerate(sums):
+            parts: dict[str, Node] = {}
+            ends: dict[str, Operand] = {}
+            for path, of_path in zip(self.through, forms, strict=True):
+                ends[path] = 0.0
+                for what, factor in factors.with_common_factors(of_path[k]).items():
+                    if what is ONE:
+                        ends[path] = ends[path] + factor * float(self.folds.samples)
+                        continue
+                    label = f"sum {what.key.hex()}"
+                    parts[label] = what
+                    ends[path] = ends[path] + variable(label) * factor
+            found[fold.name] = States(parts, {path: as_node(end) for path, end in ends.items()})
+        return found
+
+    def _split(self, still: Graph) -> tuple[Graph, Graph, dict[str, Node]]:
+        """Parts that stand while samples are passed, the rest with these as variables, and all that stands in it."""
+        # what differs from sample to sample, and what jumps, cannot stand still
+        jumping = self.moving | self.given.keys()
+        variables = [x for x in still.variables if x not in jumping]
+        parts, rest = split_graph(still, variables, f"{next(iter(still.outputs))} part")
+        return parts, rest, {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
 
     def _at_sample(self, fold: Fold, by_paths: States) -> States | None:
         """One state for all paths: at which sample the extreme is. None where more moves than inputs."""
@@ -244,16 +286,11 @@ class Slopes:
         To fold is linear in derivatives. So the chain from these parts down to the values at paths is gone through
         once a mechanism, at the end.
         """
-        still = self._without_standing(fold.value)
-        # what differs from sample to sample, and what jumps, cannot stand still
-        jumping = self.moving | self.standing.keys()
-        variables = [x for x in Graph({"": still}).variables if x not in jumping]
-        parts, rest = split_graph(Graph({"": still}), variables, f"{fold.name} part")
-        standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
+        parts, rest, standing = self._split(Graph({fold.name: self._without_standing(fold.value)}))
         factors = {x: self.of_node(node) for x, node in standing.items()}
         # parts that no value moves need no state
         moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
-        slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
+        slopes = gradient(rest.outputs[fold.name], [variable(x) for x in moved])
         labels = {x: f"{fold.name} through {x}" for x in moved}
         graph = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
         ends: dict[str, Operand] = dict.fromkeys(self.through, 0.0)
@@ -263,21 +300,52 @@ class Slopes:
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
         # the parts are put back as expressions: states are folded from variables of the plan alone
-        outputs = graph.substitute({**self.standing, **parts.outputs}).outputs
+        outputs = self._with_closed_forms(graph.substitute(parts.outputs)).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
-    def _without_standing(self, node: Node) -> Node:
-        standing = {x: variable(name) for name, x in self.standing.items()}
-        return rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
+    @cached_property
+    def given(self) -> dict[str, Node]:
+        """Name -> what derivatives by dimensions take as given: what stands, and what implicit functions hold."""
+        return {**self.standing, **(self.implied.held if self.implied else {})}
 
-    def _work(self, states: States) -> int:
+    @cached_property
+    def _replacements(self) -> dict[Node, Node]:
+        """What stands as variables, and places in closed form as implicit functions of their loci."""
+        replacements = {x: variable(name) for name, x in self.standing.items()}
+        for place, implied in self.implied.places.items() if self.implied else ():
+            # loci may hang on places that were found before
+            replacements[place] = self._replace(implied, replacements)
+        return replacements
+
+    @cached_property
+    def _closed_forms(self) -> dict[Node, Node]:
+        """The other way round: values are those of closed forms."""
+        return {x: place for place, x in self._replacements.items()}
+
+    def _with_closed_forms(self, slopes: Graph) -> Graph:
+        """Derivatives with the numbers that they take as given."""
+
+        def replacement(node: Node, _arguments: tuple[Node, ...]) -> Node | None:
+            closed = self._closed_forms.get(node)
+            return self.given.get(str(node.detail)) if closed is None and not node.arguments else closed
+
+        return Graph(rebuilt(slopes.outputs, replacement))
+
+    def _without_standing(self, node: Node) -> Node:
+        return self._replace(node, self._replacements)
+
+    def _replace(self, node: Node, replacements: Mapping[Node, Node]) -> Node:
+        return rebuilt({"": node}, lambda x, _arguments: replacements.get(x))[""]
+
+    def _work(self, *ways: States) -> int:
         """Operations that are carried out at every sample."""
+        parts = {name: part for states in ways for name, part in states.parts.items()}
         moving = set()
-        for node in Graph(states.parts).order:
+        for node in Graph(parts).order:
             own = node.operation == VARIABLE and node.detail in self.moving
             if own or any(x in moving for x in node.arguments):
                 moving.add(node)
-        return len(moving) + len(states.parts)
+        return len(moving) + len(parts)
 
 
 def _is_something(factor: Node) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -39,8 +40,8 @@ Values: TypeAlias = Sequence[float | str] | Mapping[str, float | str] | Array
 class Frame:
     """The motion of one mechanism at the samples of a solver, as plain arrays that cannot be written to.
 
-    Arrays of a clear mechanism are views of memory that the thread's next `move` of the same solver overwrites; `copy`
-    keeps them.
+    Arrays of a clear mechanism are views of the solver's memory, which a later `move` uses again once nothing refers to
+    the frame or to an array of it any more.
 
     Attributes
     ----------
@@ -109,14 +110,35 @@ class Frame:
         return self.solver.dataset(self.values)
 
 
-@dataclass(frozen=True)
-class _Kept:
-    """Memory of a thread, and the frame of what is in it."""
+class _KeptFrame:
+    """Memory of a thread, and the frame of what is in it.
 
-    memory: Any
-    frame: Frame
+    A slice refers to the array that owns its memory, and a frame to the mapping of its arrays: references to these are
+    counted, so that nothing is overwritten that somebody still has.
+    """
+
+    def __init__(self, solver: Solver, memory: Any, status: npt.NDArray[np.int8]) -> None:
+        self.memory = memory
+        self.frame = Frame(
+            solver, solver.own, status, memory.quantities[RESIDUAL], (), memory.quantities, {}, True
+        )
+        owners = {id(x.base): x.base for x in self.frame.arrays.values() if x.base is not None}
+        self._shown = (self.frame.arrays, *self.frame.arrays.values(), *owners.values())
+        # counted while nothing but the memory and this frame refers to them
+        del owners
+        self._own = self._references()
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nobody has the frame, an array of it, or a part of one."""
+        return self._references() <= self._own
+
+    def _references(self) -> int:
+        return sum(map(sys.getrefcount, self._shown))
 
 
+MEMORIES = 4
+"""Memories of a thread that are looked at before another one is made; a frame that is kept has its own to itself."""
 _FLOATS = frozenset({float})
 
 
@@ -253,7 +275,7 @@ class Solver:
         if not self._possible(given):
             return self._without_values(given)
         if self._plan is not None:
-            kept = self._kept()
+            kept = self._kept_frame()
             if self._plan.move(given, kept.memory):
                 outputs = {} if self._outputs is None else self._outputs_of(given)
                 return _frame_like(kept.frame, given, outputs)
@@ -351,18 +373,24 @@ class Solver:
 
     # frames
 
-    def _kept(self) -> _Kept:
-        kept: _Kept | None = getattr(self._local, "kept", None)
-        if kept is None:
-            assert self._plan is not None
-            memory = self._plan.memory()
-            arrays = memory.quantities
-            frame = Frame(self, self.own, self._ok, arrays[RESIDUAL], (), arrays, {}, True)
-            kept = self._local.kept = _Kept(memory, frame)
+    def _kept_frame(self) -> _KeptFrame:
+        memories: list[_KeptFrame] | None = getattr(self._local, "memories", None)
+        if memories is None:
+            memories = self._local.memories = [self._made_frame()]
+        kept = memories[0]
+        if not kept.is_free:
+            kept = next((each for each in memories if each.is_free), None) or self._made_frame()
+            # the one that is used stands first, what has not been used for long is left to those who have it
+            memories[:] = [kept, *(each for each in memories if each is not kept)][:MEMORIES]
         return kept
 
+    def _made_frame(self) -> _KeptFrame:
+        assert self._plan is not None
+        return _KeptFrame(self, self._plan.memory(), self._ok)
+
     def _memory(self) -> Any:
-        return self._kept().memory
+        """Memory to judge a mechanism in; what a frame shows of it is not written to."""
+        return self._kept_frame().memory
 
     def _solved(self, given: tuple[float, ...]) -> Solved:
         return solve(self._free.ready, self._span, self._free.dimensions(given), 1)

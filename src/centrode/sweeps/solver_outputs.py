@@ -180,7 +180,7 @@ class _SlopesByPaths(Slopes):
         still = [self._without_standing(node) for node in nodes]
         found = directional_derivatives(still, [dict(through) for through in self.through.values()])
         names = {(k, j): f"{k} {j}" for k in range(len(nodes)) for j in range(len(found))}
-        graph = Graph.of({name: found[j][k] for (k, j), name in names.items()}).substitute(self.standing)
+        graph = self._with_closed_forms(Graph.of({name: found[j][k] for (k, j), name in names.items()}))
         return [
             {path: graph.outputs[names[k, j]] for j, path in enumerate(self.through)}
             for k in range(len(nodes))

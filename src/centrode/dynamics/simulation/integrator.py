@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
 from itertools import pairwise
 from math import copysign, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-import scipy.integrate
 
 from centrode.dynamics.simulation.equation_of_motion import (
     CREEP,
@@ -43,6 +44,7 @@ from centrode.numerics.search import bisect, root
 State: TypeAlias = npt.NDArray[np.float64]
 Array: TypeAlias = State
 
+_integrate = partial(import_module, "scipy.integrate")  # off the path of commands that simulate nothing
 REST_SCANS = 2000
 """Instants at which a mechanism at rest is checked for breaking loose, where something depends on time."""
 
@@ -274,7 +276,7 @@ class Solvers:
         # works are measured by the kinetic energy at the fastest speed so far
         energy = max(1e-300, inertia * self.fastest**2)
         scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
-        kind = scipy.integrate.Radau if self.watch.stiff else scipy.integrate.DOP853
+        kind = _integrate().Radau if self.watch.stiff else _integrate().DOP853
         limit = self.end if end is None else end
         # SciPy takes no relative tolerance below 100 units of rounding
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
@@ -427,7 +429,7 @@ class Stepper:
                 if solver.status == "finished":
                     return t, y + begun * _RELATIVE
                 # the stiff scheme takes over in the middle of a leg, from the last good state
-                if self.watch.stiff and not isinstance(solver, scipy.integrate.Radau):
+                if self.watch.stiff and not isinstance(solver, _integrate().Radau):
                     solver = self.solvers.solver(rates, t, y, begun, leg)
                 continue
             when, component, target = event

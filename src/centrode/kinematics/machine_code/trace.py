@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
+from centrode.geometry.space import Space
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.higher_class.elimination import pattern_of
@@ -74,6 +75,43 @@ class Untraceable(Exception):
         super().__init__(reason)
 
 
+@dataclass
+class ImpliedPlaces:
+    """Places where loci meet as implicit functions of the loci, whose derivatives take a few products each.
+
+    Attributes
+    ----------
+    places : a place's coordinate in closed form -> as an implicit function
+    held : name -> what stands in these functions without derivatives
+    """
+
+    space: Space
+    places: dict[Node, Node] = field(default_factory=dict)
+    held: dict[str, Node] = field(default_factory=dict)
+
+    def add(self, loci: Sequence[Any], place: Any, root: Operand) -> None:
+        """Take a place where two loci meet, found with a root, values as jets or not."""
+        one, other = (type(locus)(*(_plain_values(x) for x in locus)) for locus in loci)
+        closed = _plain_values(place)
+        implied = self.space.implied_place(one, other, closed, root, self._hold)
+        for x, y in zip(closed, implied or closed, strict=True):
+            if isinstance(x, Node) and x.arguments:
+                self.places[x] = as_node(y)
+
+    def _hold(self, number: Number) -> Number:
+        # constants have no derivatives, and plain variables need no name of their own
+        if not isinstance(number, Node) or not number.arguments:
+            return number
+        name = f"held {number.key.hex()}"
+        self.held[name] = number
+        return variable(name)
+
+
+def _plain_values(numbers: Any) -> Any:
+    """Numbers, or a vector of some, without derivatives."""
+    return tuple(map(plain, numbers)) if isinstance(numbers, tuple) else plain(numbers)
+
+
 class Deciding(EvaluationPolicy):
     """Signs as they are given; radicands, divisors and steps of groups of higher class are kept.
 
@@ -88,6 +126,7 @@ class Deciding(EvaluationPolicy):
         on_mesh: bool,
         chains: Mapping[int, LinkChain],
         differentiable: bool,
+        space: Space,
     ) -> None:
         self.signs = signs
         self.on_mesh = on_mesh
@@ -95,6 +134,8 @@ class Deciding(EvaluationPolicy):
         self.differentiable = differentiable
         self.steps: dict[int, NewtonStep] = {}
         self.counted: dict[str, tuple[Node, Node]] = {}
+        self.implied = ImpliedPlaces(space)
+        self.roots: dict[int, Operand] = {}
         self.radicands: dict[int, Number] = {}
         self.divisors: dict[int, Number] = {}
 
@@ -102,7 +143,13 @@ class Deciding(EvaluationPolicy):
         self.radicands[group] = radicand
         if not isinstance(radicand, Jet) and not self.on_mesh:
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
-        return NODE_JETS.sqrt(radicand) * self.signs[group]
+        root = NODE_JETS.sqrt(radicand) * self.signs[group]
+        self.roots[group] = plain(root)
+        return root
+
+    def take_meeting(self, group: int, one: Any, other: Any, place: Any) -> None:
+        if self.differentiable and group in self.roots:
+            self.implied.add((one, other), place, self.roots[group])
 
     def divisor(self, group: int, divisor: Number) -> Number:
         self.divisors[group] = divisor
@@ -173,6 +220,7 @@ class Traced:
     turns : link -> the turns that stand in its angle: a whole number
     steps : group of higher class -> its step; there are places before and after then, see `walks`
     counted : what a gear or wheel depends on -> its turns, and its angle with these
+    implied : where loci meet, as implicit functions; empty where nothing is to be differentiated
     at : places and poses without derivatives
     """
 
@@ -184,6 +232,7 @@ class Traced:
     winders: Mapping[str, Operand]
     steps: Mapping[int, NewtonStep]
     counted: Mapping[str, tuple[Node, Node]]
+    implied: ImpliedPlaces
     at: Positions
 
     @cached_property
@@ -226,7 +275,7 @@ def trace_motion(
     # phases of gears belong to the initial position of the description, as in `of_batch`
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     chains = chains_of(ready, kinematics.numbers)
-    hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
+    hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable, known.numbers.space)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = columns_of(layout.numbers(NODE_JETS, kinematics.numbers, at))
@@ -236,8 +285,9 @@ def trace_motion(
     bent = BentPlan(ready, span, varied, signs)
     places = at.map_numbers(plain)
     return Traced(
-        solved, hooks.radicands, hooks.divisors, bent, turning, winders, hooks.steps, hooks.counted, places
-    )
+        solved, hooks.radicands, hooks.divisors, bent, turning, winders, hooks.steps, hooks.counted,
+        hooks.implied, places,
+    )  # fmt: skip
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:
