@@ -10,6 +10,7 @@ from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
@@ -28,6 +29,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
         clusters.CAMPAIGN,
+        free_motions.CAMPAIGN,
         pages.CAMPAIGN,
     )
 }
