@@ -104,7 +104,7 @@ class DenseEquations:
         """Kinetic energy [J]."""
         return 0.5 * float(np.sum(np.linalg.solve(self.root, v) ** 2))
 
-    def state_at(self, q: Array, v: Array, end: float, tolerance: float = 1e-11) -> tuple[Array, Array]:
+    def state_at(self, q: Array, v: Array, end: float, tolerance: float = 1e-10) -> tuple[Array, Array]:
         """Coordinates and velocities at a time [s]; TooManySteps where that takes too long."""
         size = self.size
 
@@ -149,6 +149,8 @@ class DenseMechanism:
         }
         self.centres = {} if self.on_sphere else {name: np.array(parts["links"][name]["centre"]) for name in self.bodies}
         self.kept: dict[Any, Any] = {}
+        self.turned: tuple[Array, Array, Array] | None = None
+        """Coordinates that were looked at last, and cosines and sines of their angles."""
         start = self._start(places, turns)
         self.equations = DenseEquations(self.constraints, self._root(), self._force())
         self.constraints(start[:, None])  # what wheels keep is what they have here
@@ -216,8 +218,10 @@ class DenseMechanism:
         k = self.bodies.index(body)
         if self.on_sphere:
             return np.tensordot(local, self.axes(q, body), 1)
-        (x, y), angle = local - self.centres[body], q[3 * k + 2]
-        cosine, sine = np.cos(angle), np.sin(angle)
+        x, y = local - self.centres[body]
+        if self.turned is None or self.turned[0] is not q:
+            self.turned = q, np.cos(q[2::3]), np.sin(q[2::3])
+        cosine, sine = self.turned[1][k], self.turned[2][k]
         return np.array([q[3 * k] + cosine * x - sine * y, q[3 * k + 1] + sine * x + cosine * y])
 
     def axes(self, q: Array, body: str) -> Array:

@@ -100,6 +100,13 @@ class MotionIntegration:
         """The initial value problem, its numbers being parameters."""
         return motion_problem(self.variables.equations, self.variables.parameters)
 
+    def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
+        """The same problem for equations of the same structure with other numbers."""
+        other = MotionIntegration(equations)
+        for name in ("variables", "names", "problem", "_half_circles"):
+            other.__dict__[name] = getattr(self, name)
+        return other
+
     def integrator(self, executor: str = "auto") -> Integrator:
         """What takes steps of one mechanism, by an executor."""
         return integrator_of(self.problem, executor)

@@ -274,17 +274,23 @@ def coordinate_names(free: FreeMotion) -> tuple[str, ...]:
 
 
 def _coordinates_in_time(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
-    units = [one.unit for one in setting.free.coordinates]
-    found: dict[str, Variable] = {}
-    for name, values, behind in (
-        ("generalised_coordinate", course.coordinates, ""),
-        ("generalised_velocity", course.speeds, "/s"),
-        ("generalised_acceleration", course.accelerations, "/s^2"),
-    ):
-        variable = vocabulary_variable(name, ("sample", "coordinate"), values)
-        variable[2]["units"] = _joined_units([f"{unit}{behind}" for unit in units])
-        found[name] = variable
-    return found
+    return {
+        name: coordinate_variable(setting.free, name, ("sample", "coordinate"), values, behind)
+        for name, values, behind in (
+            ("generalised_coordinate", course.coordinates, ""),
+            ("generalised_velocity", course.speeds, "/s"),
+            ("generalised_acceleration", course.accelerations, "/s^2"),
+        )
+    }
+
+
+def coordinate_variable(
+    free: FreeMotion, name: str, dimensions: tuple[str, ...], values: Array, behind: str
+) -> Variable:
+    """A variable of the generalised coordinates, the last dimension; `behind` follows their units."""
+    variable = vocabulary_variable(name, dimensions, values)
+    variable[2]["units"] = _joined_units([f"{one.unit}{behind}" for one in free.coordinates])
+    return variable
 
 
 def _joined_units(units: list[str]) -> str:
