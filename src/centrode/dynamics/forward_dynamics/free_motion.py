@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of
+from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of, shafts_of
 from centrode.dynamics.forward_dynamics.initial_position import InitialPosition, position_of_description
 from centrode.dynamics.forward_dynamics.initial_state import (
     InitialState,
@@ -207,6 +207,8 @@ def free_motion_of(
     burden = MassesAndLoads.of(mechanism)
     loads = free_loads_of(mechanism, burden.loads, efforts)
     kept = kept_drives_of(mechanism, float(position.numbers.scale), keeps)
-    equations = EquationsOfMotion(tree, position.numbers, burden.masses, loads, kept)
+    equations = EquationsOfMotion(
+        tree, position.numbers, burden.masses, loads, kept, shafts=shafts_of(mechanism)
+    )
     equations, rank = solvable_equations(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)

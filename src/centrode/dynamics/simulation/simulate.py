@@ -354,6 +354,7 @@ def simulate(
     motion: bool = False,
     executor: Executor = "auto",
     progress: Tell | None = None,
+    reactions: bool = False,
     vary: Mapping[str, Any] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -373,6 +374,9 @@ def simulate(
     executor : "auto", "arrays" or "machine code"
         Of the equations of all links.
     progress : called with the share that is done
+    reactions : bool
+        Also the reactions in all joints at these instants, by the equations of all links; names are those of
+        `ct.reactions`, NaN where redundant constraints leave them open.
     vary : path -> values (mechanisms), numbers [SI] or texts with a unit
         Lengths, masses and loads of many mechanisms of one structure, integrated together by the equations of all
         links. Each starts in the state that is nearest to the described one.
@@ -425,8 +429,13 @@ def simulate(
         )
         return many
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
-        run: xr.Dataset = _multibody().simulate_multibody(mechanism, settings, at, executor, progress)
+        run: xr.Dataset = _multibody().simulate_multibody(
+            mechanism, settings, at, executor, progress, reactions
+        )
         return run
+    if reactions:
+        what = _("reactions in a simulation come from the equations of all links")
+        raise InputError("reactions", what, _('write equations = "multibody" in [simulation]'))
     if executor == "machine code":
         raise InputError(
             "executor",
