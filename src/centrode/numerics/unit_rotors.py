@@ -1,4 +1,4 @@
-"""Sums of products without squares of a cosine beside those of its sine, and without products that cancel.
+"""Sums of products without squares of a cosine beside those of its sine, and without products of them that cancel.
 
 A vector of a link that is turned by its rotor (c, s) has a length that does not depend on it: c^2 a + s^2 a is a. Jets
 of positions do not know that, so it is looked for in the sums that they leave: there it makes numbers of a lane of
@@ -86,6 +86,9 @@ class _Merging:
             if k not in left:
                 continue
             off, factors, _node = left[k]
+            if not any(one in self.partners for one, _count in factors):
+                # a number that is added and taken off again may be there to round
+                continue
             other = self._other(places, left, k, (not off, factors))
             if other is not None:
                 del left[k], left[other]

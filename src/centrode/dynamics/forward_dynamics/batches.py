@@ -109,7 +109,7 @@ def start_of_many(
         moving = started.consistent_speeds(ARRAYS, placed, list(start.speeds), 0.0, system)
     lanes = _lanes_of(equations, [*coordinates, *moving])
     gap = np.max([np.broadcast_to(np.abs(x), lanes) for x in terms.values], axis=0, initial=0.0)
-    closes = gap <= OPEN * max(1.0, float(np.max(equations.numbers.scale)))
+    closes = np.broadcast_to(gap <= OPEN * max(1.0, float(np.max(equations.numbers.scale))), lanes)
 
     def spread(rows: Sequence[Any]) -> Array:
         return np.array([np.broadcast_to(np.asarray(x, dtype=np.float64), lanes) for x in rows])
