@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
@@ -30,6 +31,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         commands.CAMPAIGN,
         clusters.CAMPAIGN,
         clearances.CAMPAIGN,
+        free_motions.CAMPAIGN,
         pages.CAMPAIGN,
     )
 }

@@ -147,6 +147,8 @@ class Pieces:
 
     def _jet_with_texts(self, m: Any, t: Number) -> Number:
         """The value at t where some formulas are no rows: of an array each of these is evaluated for itself."""
+        if hasattr(plain(t), "is_condition"):
+            raise TypeError("text formulas of segments are chosen by a value")
         places = places_at(self.breaks, plain(t))
         if isinstance(places, int):
             return self.at_row(places, m, t)
@@ -177,6 +179,19 @@ def between(first: float, last: float, share: float) -> float:
 def plain(t: Number) -> Number:
     """The plain value of a jet or a bounded number."""
     return getattr(t, "value", t)
+
+
+ROUNDER = 1.5 * 2.0**52
+"""Adding it and taking it off again rounds to a whole number."""
+
+
+def whole_turns(t: Number, period: Number) -> Number:
+    """The whole periods before a plain t; of an expression by rounding, as it has no floor."""
+    if not hasattr(t, "is_condition"):
+        return t // period
+    m, turns = t.__array_namespace__(), t / period
+    nearest = (turns + ROUNDER) - ROUNDER
+    return nearest - m.where(m.less(turns, nearest), 1.0, 0.0)
 
 
 def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:

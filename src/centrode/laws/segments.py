@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from centrode.errors import InputError
-from centrode.laws.rises import CURVES, Number, Piece, Pieces, TextPiece, plain
+from centrode.laws.rises import CURVES, Number, Piece, Pieces, TextPiece, plain, whole_turns
 from centrode.locale import _
 from centrode.numerics.operations import FUNCTIONS
 from centrode.numerics.text_formula import TextFormula, compile_formula
@@ -530,5 +530,5 @@ class SegmentedLaw:
         if not self.repeat:
             return self.whole.jet(m, t)
         # whole turns are taken off the time and their gains added, so that formulas stay within a period
-        turn = plain(t) // self.period
+        turn = whole_turns(plain(t), self.period)
         return self.whole.jet(m, t - turn * self.period) + turn * self.gain

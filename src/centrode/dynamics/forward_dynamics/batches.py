@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -13,14 +13,17 @@ import numpy.typing as npt
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
 from centrode.dynamics.forward_dynamics.free_loads import free_loads_of
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
+from centrode.dynamics.forward_dynamics.initial_position import OPEN
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
-from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS, RATE
+from centrode.dynamics.forward_dynamics.model_numbers import map_equations
+from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS
+from centrode.dynamics.forward_dynamics.motion_steps import BLOW_UP, CHANGE_POINT, DURATION, STEP_SIZE
 from centrode.dynamics.loads import loads_of
 from centrode.dynamics.masses import masses_of
 from centrode.kinematics.path import DrivenBy
 from centrode.laws import Uniform
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.initial_value_problems import HEADER, STEP, TIME
+from centrode.numerics.initial_value_problems import END, HEADER, STEP, TIME
 from centrode.numerics.integrators import integrator_of
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import AngleDrive, DisplacementDrive, DistanceDrive, constraints_of
@@ -32,6 +35,9 @@ NEWTON_STEPS = 8
 """Steps from the described position to that of other dimensions: twice as many as ten per cent off take."""
 ATTEMPTS = 10_000_000
 """Bound of what a lane may try."""
+NOT_ASSEMBLED = "not assembled"
+ENDS = (DURATION, CHANGE_POINT, BLOW_UP, STEP_SIZE, NOT_ASSEMBLED)
+"""How a lane may end, by number."""
 
 
 @dataclass(frozen=True)
@@ -40,19 +46,23 @@ class FreeMotions:
 
     Attributes
     ----------
-    time : (lanes) [s], reached; shorter than the duration where a motion stopped before a change point
-    coordinates, speeds : (coordinates, lanes) at that time
-    kinetic_energy, potential_energy : (lanes) [J] then
-    energy_residual : (lanes) [J], change of both less the works
+    times : (instants) [s]
+    coordinates, speeds : (instants, coordinates, lanes); NaN behind the end of a motion
+    kinetic_energy, potential_energy : (instants, lanes) [J]
+    energy_residual : (instants, lanes) [J], change of both since the start less the works
+    reached : (lanes) [s], the instant up to which each motion went
+    ended : (lanes), numbers in `ENDS`
     attempts : steps tried, of all lanes of the vector in which the lane is
     """
 
-    time: Array
+    times: Array
     coordinates: Array
     speeds: Array
     kinetic_energy: Array
     potential_energy: Array
     energy_residual: Array
+    reached: Array
+    ended: npt.NDArray[np.int8]
     attempts: Array
 
 
@@ -71,87 +81,159 @@ def equations_of_many(free: FreeMotion, numbers: Mapping[str, npt.ArrayLike]) ->
 
 
 def start_of_many(
-    free: FreeMotion, equations: EquationsOfMotion, speeds: Mapping[str, float]
-) -> InitialState:
-    """Coordinates and speeds (coordinates, lanes): drives at their described places, with these speeds [rad/s, m/s]."""
-    values = free.drive_values(free.position.coordinates)
+    free: FreeMotion, equations: EquationsOfMotion, start: InitialState
+) -> tuple[InitialState, npt.NDArray[np.bool_]]:
+    """Coordinates and speeds (coordinates, lanes) nearest to a state of the description, and which lanes close.
+
+    Drives have the values and speeds that they have there; of what they leave open the change is the least.
+    """
+    values, speeds = free.drive_values(start.coordinates), free.drive_speeds(start)
     held = []
     for constraint in constraints_of(free.mechanism):
         if isinstance(constraint, AngleDrive | DisplacementDrive | DistanceDrive):
             drive = next(one for one in free.mechanism.drives if one.id == constraint.drive)
-            law = Uniform(float(speeds.get(drive.id, 0.0)))
-            held.append(KeptDrive(constraint, DrivenBy(drive, law, values[drive.id])))
-    started = replace(equations, kept=tuple(held), references=(), dependent=frozenset(), weights=())
-    coordinates = [np.asarray(x) for x in free.position.coordinates]
+            held.append(
+                KeptDrive(constraint, DrivenBy(drive, Uniform(speeds[drive.id]), values[drive.id]))
+            )
+    started = replace(equations, kept=tuple(held))
+    coordinates = [np.asarray(x) for x in start.coordinates]
     rest = [0.0] * len(coordinates)
-    for _step in range(NEWTON_STEPS):
-        terms = started.terms(ARRAYS, free.tree.values(ARRAYS, coordinates), rest, 0.0)
-        shift = started.shift_to_close(terms, started.system(ARRAYS, terms))
-        coordinates = [x + shift.get(k, 0.0) for k, x in enumerate(coordinates)]
-    placed = free.tree.values(ARRAYS, coordinates)
-    system = started.system(ARRAYS, started.terms(ARRAYS, placed, rest, 0.0))
-    moving = started.consistent_speeds(ARRAYS, placed, rest, 0.0, system)
-    lanes = np.broadcast_shapes(*(np.shape(x) for x in (*coordinates, *moving)))
+    with np.errstate(all="ignore"):
+        for _step in range(NEWTON_STEPS):
+            terms = started.terms(ARRAYS, free.tree.values(ARRAYS, coordinates), rest, 0.0)
+            shift = started.shift_to_close(terms, started.system(ARRAYS, terms))
+            coordinates = [x + shift.get(k, 0.0) for k, x in enumerate(coordinates)]
+        placed = free.tree.values(ARRAYS, coordinates)
+        terms = started.terms(ARRAYS, placed, rest, 0.0)
+        system = started.system(ARRAYS, terms)
+        moving = started.consistent_speeds(ARRAYS, placed, list(start.speeds), 0.0, system)
+    lanes = _lanes_of(equations, [*coordinates, *moving])
+    gap = np.max([np.broadcast_to(np.abs(x), lanes) for x in terms.values], axis=0, initial=0.0)
+    closes = np.broadcast_to(gap <= OPEN * max(1.0, float(np.max(equations.numbers.scale))), lanes)
 
-    def spread(rows: Sequence[npt.ArrayLike]) -> Array:
+    def spread(rows: Sequence[Any]) -> Array:
         return np.array([np.broadcast_to(np.asarray(x, dtype=np.float64), lanes) for x in rows])
 
-    return InitialState(spread(coordinates), spread(moving))
+    return InitialState(spread(coordinates), spread(moving)), closes
+
+
+def _lanes_of(equations: EquationsOfMotion, numbers: Sequence[Any]) -> int:
+    """Number of lanes: what varies may be a mass, which moves nothing at the start."""
+    found = [np.shape(x) for x in numbers]
+
+    def look(number: Any) -> Any:
+        found.append(np.shape(number))
+        return number
+
+    map_equations(equations, look)
+    return int(np.prod(np.broadcast_shapes(*found)))
+
+
+def numbers_that_vary(equations: EquationsOfMotion) -> int:
+    """Count of the numbers of equations that differ from lane to lane."""
+    found: list[Any] = []
+
+    def look(number: Any) -> Any:
+        found.append(number)
+        return number
+
+    map_equations(equations, look)
+    return sum(np.ndim(number) > 0 for number in found)
 
 
 def integrate_many(
     free: FreeMotion,
     numbers: Mapping[str, npt.ArrayLike],
-    speeds: Mapping[str, float],
-    duration: float,
+    start: InitialState,
+    times: npt.ArrayLike,
     tolerance: float = 1e-9,
     threads: int = 1,
     executor: str = "auto",
+    progress: Callable[[float], None] | None = None,
 ) -> FreeMotions:
-    """Motions of mechanisms whose numbers differ, from the drives' starts and speeds.
+    """Motions of mechanisms whose numbers differ, each from the state nearest to one of the description.
+
+    Motions that come to a change point are integrated again one by one, so that they pass it.
 
     Parameters
     ----------
     numbers : path -> values (lanes), as "links.AB.length", "links.AB.mass"
-    speeds : drive -> speed at the start [rad/s or m/s]
-    duration [s], tolerance : as those of `FreeMotion.integrate`
+    start : as `FreeMotion.initial` gives it
+    times : (instants) [s] that grow; all are integrated up to the last
+    tolerance : as that of `FreeMotion.integrate`
     threads : share the lanes
+    progress : called with the share that is done
     """
+    instants = np.atleast_1d(np.asarray(times, dtype=np.float64))
     equations = equations_of_many(free, numbers)
-    start = start_of_many(free, equations, speeds)
-    lanes = start.coordinates.shape[1]
-    parameters = _parameters(free, equations, start, duration, tolerance, lanes)
-    carried = _carried_values(free, start, parameters, lanes)
-    rate = parameters[CONTROLS.index(RATE)]
-    first = np.minimum(duration, 0.01 / rate)
+    begun, closes = start_of_many(free, equations, start)
+    lanes = begun.coordinates.shape[1]
+    integration, names = free.integration, free.integration.names
+    parameters = _parameters(free, equations, begun, float(instants[-1]), tolerance, lanes)
+    carried = _carried_values(free, begun, parameters, lanes)
+    rate = integration.rate(start)
+    first = np.full(lanes, min(float(instants[-1]), 0.01 / rate))
     state = np.concatenate([np.zeros((1, lanes)), first[None], np.zeros((2, lanes)), carried])
-    integrator = integrator_of(free.integration.problem, executor, width=None)
+    # what does not close is left where it is
+    state[HEADER:, ~closes] = 0.0
+    state[1, ~closes] = 0.0
+    integrator = integrator_of(integration.problem, executor, width=None)
     bounds = np.linspace(0, lanes, threads + 1).astype(int)
+    rows = np.full((len(instants), len(integration.problem.carried), lanes), np.nan)
+    attempts = np.zeros(lanes)
     with ThreadPoolExecutor(threads) as pool:
-        parts = list(
-            pool.map(
+        for number, instant in enumerate(instants):
+            parameters[CONTROLS.index(END)] = instant
+            parts = pool.map(
                 lambda k: integrator.run(
                     parameters[:, bounds[k] : bounds[k + 1]], state[:, bounds[k] : bounds[k + 1]], ATTEMPTS
                 ),
                 range(threads),
             )
+            state = np.concatenate(list(parts), axis=1)
+            attempts += state[2]
+            arrived = closes & (state[0] >= instant)
+            rows[number][:, arrived] = state[HEADER:, arrived]
+            if progress is not None:
+                progress((number + 1) / len(instants))
+    ended = np.where(closes, ENDS.index(DURATION), ENDS.index(NOT_ASSEMBLED)).astype(np.int8)
+    for lane in np.flatnonzero(closes & (state[0] < instants[-1])):
+        own = free.with_numbers(map_equations(equations, lambda x, k=lane: _of_lane(x, k)))
+        begun_there = InitialState(begun.coordinates[:, lane].copy(), begun.speeds[:, lane].copy())
+        steps = own.integration.explicit_steps(begun_there, float(instants[-1]), tolerance, executor)
+        reached = instants[instants <= steps.rows[0, -1]]
+        rows[: len(reached), :, lane] = own.integration.states_at(steps, reached, executor).T
+        rows[len(reached) :, :, lane] = np.nan
+        ended[lane] = ENDS.index(steps.ended)
+    coordinates, speeds = rows[:, names.part(names.coordinates)], rows[:, names.part(names.speeds)]
+    works = np.sum(rows[:, names.part(names.works)], axis=1)
+    with np.errstate(all="ignore"):
+        began = _energies(free, equations, begun.coordinates, begun.speeds, 0.0)
+        energies = np.array(
+            [
+                _energies(free, equations, q, w, float(instant))
+                for q, w, instant in zip(coordinates, speeds, instants, strict=True)
+            ]
         )
-    reached = np.concatenate(parts, axis=1)
-    names = free.integration.names
-    before, after = (
-        [rows[names.part(part)] for part in (names.coordinates, names.speeds)]
-        for rows in (carried, reached[HEADER:])
-    )
-    energies = [
-        equations.energies(ARRAYS, free.tree.values(ARRAYS, list(q)), list(w), 0.0)
-        for q, w in (before, after)
-    ]
-    works = np.sum(reached[HEADER:][names.part(names.works)], axis=0)
-    (kinetic, potential), (own, stored) = energies
+    kinetic, potential = energies[:, 0], energies[:, 1]
+    known = np.isfinite(coordinates[:, 0]) if coordinates.shape[1] else np.ones((len(instants), lanes), bool)
+    arrivals = np.where(known, instants[:, None], 0.0)
     return FreeMotions(
-        reached[0], after[0], after[1], np.broadcast_to(own, lanes), np.broadcast_to(stored, lanes),
-        own + stored - kinetic - potential - works, reached[2],
+        instants, coordinates, speeds, kinetic, potential,
+        kinetic + potential - began[0] - began[1] - works, np.max(arrivals, axis=0), ended, attempts,
     )  # fmt: skip
+
+
+def _of_lane(number: Any, lane: int) -> Any:
+    """The number of one lane."""
+    values = np.asarray(number) if isinstance(number, np.ndarray) else number
+    return float(values[lane]) if isinstance(values, np.ndarray) and values.ndim else number
+
+
+def _energies(free: FreeMotion, equations: EquationsOfMotion, q: Array, w: Array, time: float) -> Array:
+    values = free.tree.values(ARRAYS, list(q))
+    kinetic, potential = equations.energies(ARRAYS, values, list(w), time)
+    return np.array([np.broadcast_to(kinetic, q.shape[1]), np.broadcast_to(potential, q.shape[1])])
 
 
 def _parameters(
@@ -163,8 +245,11 @@ def _parameters(
     lanes: int,
 ) -> Array:
     """Controls and numbers (parameters, lanes); speeds are compared with the greatest of all lanes."""
-    one = InitialState(start.coordinates[:, 0], np.max(np.abs(start.speeds), axis=1))
-    own = free.integration.parameters(duration, tolerance, free.integration.rate(one), lanes)
+    known = np.all(np.isfinite(start.speeds), axis=0)
+    fastest = np.max(np.abs(start.speeds[:, known]), axis=1, initial=0.0)
+    own = free.integration.parameters(
+        duration, tolerance, free.integration.rate(InitialState(free.position.coordinates, fastest)), lanes
+    )
     found = free.integration.variables.values(equations)
     own[len(CONTROLS) :] = np.broadcast_to(found, (len(found), lanes))
     return own

@@ -8,10 +8,9 @@ from math import nan
 from typing import Any, TypeAlias
 
 from centrode.dynamics.loads import SLACK, EnergyClass, LoadDiagram, LoadTable, Situation
+from centrode.laws.rises import whole_turns
 
 Number: TypeAlias = Any
-ROUNDER = 1.5 * 2.0**52
-"""Adding it and taking it off again rounds to a whole number."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +51,7 @@ class BrokenLine:
             slack = SLACK * (last - first)
             beside = m.either(m.less(place, first - slack), m.less(last + slack, place))
         else:
-            turns = (place - first) / self.period
-            whole = (turns + ROUNDER) - ROUNDER
-            whole = whole - m.where(m.less(turns, whole), 1.0, 0.0)
-            place = place - whole * self.period
+            place = place - whole_turns(place - first, self.period) * self.period
         # one line's force after the other, as far as the place has come on each
         for (low, below), (high, above) in zip(self.rows, self.rows[1:], strict=False):
             share = m.least(m.greatest((place - low) / (high - low), 0.0), 1.0)

@@ -41,6 +41,7 @@ from centrode.dynamics.masses import coordinates_of
 from centrode.dynamics.state import Mass, State
 from centrode.kinematics.path import DrivenBy
 from centrode.laws import Law
+from centrode.model.mechanism import Drive
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.structure.constraints import Constraint, Entity, Positions
 from centrode.structure.dimensions import Dimensions
@@ -82,6 +83,22 @@ class KeptDrive:
 
 
 @dataclass(frozen=True)
+class Shaft:
+    """Rotating masses or a flywheel that move as a drive does.
+
+    Attributes
+    ----------
+    drive : what it turns or moves with
+    coordinate : what the drive moves
+    inertia : reduced to the drive [kg m^2 or kg]
+    """
+
+    drive: Drive
+    coordinate: Coordinate
+    inertia: Number
+
+
+@dataclass(frozen=True)
 class Terms:
     """The equations at values of the coordinates and their speeds.
 
@@ -118,6 +135,7 @@ class EquationsOfMotion:
     masses : of links
     loads : efforts in the order of loads
     kept : drives that keep their laws
+    shafts : masses that turn with drives
     weights : of equations where links have no mass: W; empty where M has an inverse
     dependent : equations of which some are implied by others everywhere
     references : of every equation the size that its diagonal in S has elsewhere; S itself where they are left out
@@ -128,6 +146,7 @@ class EquationsOfMotion:
     masses: tuple[Mass, ...]
     loads: tuple[LoadAlong, ...]
     kept: tuple[KeptDrive, ...] = ()
+    shafts: tuple[Shaft, ...] = ()
     weights: tuple[Number, ...] = ()
     dependent: frozenset[int] = frozenset()
     references: tuple[Number, ...] = ()
@@ -210,12 +229,24 @@ class EquationsOfMotion:
     def _inertia(self, state: JointState, columns: Sequence[JointState]) -> tuple[Entries, Vector]:
         mass: Entries = {}
         force: Vector = {}
-        for body, depends in self._centres:
-            along = coordinates_of(state, body)
-            slopes = {k: coordinates_of(columns[k], body) for k in depends}
+        parts: list[tuple[Sequence[tuple[Number, Jet]], dict[int, Sequence[tuple[Number, Jet]]]]] = [
+            (coordinates_of(state, body), {k: coordinates_of(columns[k], body) for k in depends})
+            for body, depends in self._centres
+        ]
+        parts += [
+            (
+                [(shaft.inertia, state.drive(shaft.drive))],
+                {
+                    k: [(shaft.inertia, columns[k].drive(shaft.drive))]
+                    for k in self._reach(shaft.coordinate)
+                },
+            )
+            for shaft in self.shafts
+        ]
+        for along, slopes in parts:
             for number, (factor, jet) in enumerate(along):
                 bias = times(2.0, jet.coefficients[2])
-                share = {k: slopes[k][number][1].coefficients[1] for k in sorted(depends)}
+                share = {k: slopes[k][number][1].coefficients[1] for k in sorted(slopes)}
                 for i, a in share.items():
                     add_term(force, i, -times(factor, times(a, bias)))
                     for j, b in share.items():
@@ -331,13 +362,13 @@ class EquationsOfMotion:
         state = self._state(jets, at, time, 2)
         return self.kinetic_energy(state), self.potential_energy(state)
 
-    def kinetic_energy(self, state: State) -> Number:
+    def kinetic_energy(self, state: JointState) -> Number:
         """Kinetic energy of a state along time [J]."""
         total: Number = 0.0
-        for mass in self.masses:
-            for factor, jet in coordinates_of(state, mass):
-                speed = jet.coefficients[1]
-                total = total + times(0.5 * factor, times(speed, speed))
+        parts = [part for mass in self.masses for part in coordinates_of(state, mass)]
+        for factor, jet in [*parts, *((shaft.inertia, state.drive(shaft.drive)) for shaft in self.shafts)]:
+            speed = jet.coefficients[1]
+            total = total + times(0.5 * factor, times(speed, speed))
         return total
 
     def potential_energy(self, state: State) -> Number:

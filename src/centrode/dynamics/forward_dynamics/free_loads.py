@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from centrode.dynamics.forward_dynamics.broken_lines import broken_line_of
-from centrode.dynamics.forward_dynamics.equations_of_motion import LoadAlong
+from centrode.dynamics.forward_dynamics.equations_of_motion import LoadAlong, Shaft
 from centrode.dynamics.load_coordinates import Distance, Slide, Turn
 from centrode.dynamics.loads import AppliedLoad, EnergyClass, LoadDiagram, LoadTable, LoadTerm, Situation
-from centrode.errors import NotComputedYet
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
 
@@ -74,6 +74,18 @@ def coordinate_of_drive(mechanism: Mechanism, drive: Drive) -> Turn | Slide | Di
         return Slide(drive.guide)
     assert drive.link is not None
     return Turn(drive.link) if mechanism.space == "sphere" else Turn(drive.link, drive.relative_to)
+
+
+def shafts_of(mechanism: Mechanism) -> tuple[Shaft, ...]:
+    """The shafts and the flywheel of `[machine]`, which turn with the only drive."""
+    inertia = 0.0 if mechanism.machine is None else mechanism.machine.inertia
+    if not inertia:
+        return ()
+    if len(mechanism.drives) != 1:
+        what = _("shafts and a flywheel turn with the one drive, and there are {count}")
+        raise InputError("[machine]", what.format(count=len(mechanism.drives)), _("describe them as links"))
+    (drive,) = mechanism.drives
+    return (Shaft(drive, coordinate_of_drive(mechanism, drive), inertia),)
 
 
 def _without_branches(load: AppliedLoad, term: LoadTerm) -> LoadTerm:

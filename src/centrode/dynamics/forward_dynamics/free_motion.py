@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isfinite
 from typing import Any, TypeAlias
@@ -12,9 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of
+from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of, shafts_of
 from centrode.dynamics.forward_dynamics.initial_position import InitialPosition, position_of_description
-from centrode.dynamics.forward_dynamics.initial_state import InitialState, drive_values, initial_state
+from centrode.dynamics.forward_dynamics.initial_state import (
+    InitialState,
+    drive_speeds,
+    drive_values,
+    initial_state,
+)
 from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 from centrode.dynamics.forward_dynamics.kept_drives import kept_drives_of
 from centrode.dynamics.forward_dynamics.motion_steps import DURATION
@@ -105,6 +110,16 @@ class FreeMotion:
         """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
         return drive_values(self.equations, coordinates)
 
+    def drive_speeds(self, start: InitialState) -> dict[str, float]:
+        """Speeds of all drives [rad/s or m/s; on the sphere of guides rad/s] in a state."""
+        return drive_speeds(self.equations, start)
+
+    def with_numbers(self, equations: EquationsOfMotion) -> FreeMotion:
+        """The same structure with other numbers: what is traced and compiled stays what it is."""
+        other = replace(self, equations=equations)
+        other.__dict__["integration"] = self.integration.with_numbers(equations)
+        return other
+
     def initial(
         self, speeds: Mapping[str, Any] | None = None, values: Mapping[str, float] | None = None
     ) -> InitialState:
@@ -192,6 +207,8 @@ def free_motion_of(
     burden = MassesAndLoads.of(mechanism)
     loads = free_loads_of(mechanism, burden.loads, efforts)
     kept = kept_drives_of(mechanism, float(position.numbers.scale), keeps)
-    equations = EquationsOfMotion(tree, position.numbers, burden.masses, loads, kept)
+    equations = EquationsOfMotion(
+        tree, position.numbers, burden.masses, loads, kept, shafts=shafts_of(mechanism)
+    )
     equations, rank = solvable_equations(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)

@@ -163,12 +163,24 @@ def _has_all_drives(mechanism: Mechanism, tree: SpanningTree) -> bool:
     try:
         place = close_position(tree, numbers, tree.closures, guess, {})
     except InputError:
-        # it closes elsewhere; anywhere closures are as independent as they are in general
-        place = guess
+        place = _described_place(mechanism, tree, numbers, guess)
     _left, rows = residuals_and_rows(tree, numbers, tree.closures, place, {})
     scaled = rows * units_of(tree, numbers) / equation_units(tree.closures, numbers)[:, None]
     rank = int(np.sum(np.linalg.svd(scaled, compute_uv=False) > 1e-9)) if len(scaled) else 0
     return len(mechanism.drives) >= len(tree.coordinates) - rank
+
+
+def _described_place(mechanism: Mechanism, tree: SpanningTree, numbers: Dimensions, guess: Array) -> Array:
+    """A position near the described one; the guess where the description tells none, or none closes.
+
+    Special lengths let a mechanism move that could not with others: nothing tells so but a position that closes.
+    """
+    try:
+        described = np.array([_described_value(mechanism, tree, k) for k in range(len(tree.coordinates))])
+        return close_position(tree, numbers, tree.closures, described, {})
+    except InputError:
+        # anywhere closures are as independent as they are in general
+        return guess
 
 
 def _with_any_phases(mechanism: Mechanism, tree: SpanningTree, numbers: Dimensions) -> Dimensions:

@@ -85,16 +85,26 @@ def _coordinates_with(equations: EquationsOfMotion, coordinates: Array, values: 
 
 def drive_values(equations: EquationsOfMotion, coordinates: Array) -> dict[str, float]:
     """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
+    return _of_drives(equations, InitialState(coordinates, np.zeros_like(coordinates)), 0)
+
+
+def drive_speeds(equations: EquationsOfMotion, start: InitialState) -> dict[str, float]:
+    """Speeds of all drives [rad/s or m/s; on the sphere of guides rad/s] in a state."""
+    return _of_drives(equations, start, 1)
+
+
+def _of_drives(equations: EquationsOfMotion, start: InitialState, order: int) -> dict[str, float]:
+    """Derivatives by time of the values of all drives."""
     mechanism = equations.tree.mechanism
     state = equations.state(
         ARRAYS,
-        equations.tree.values(ARRAYS, list(coordinates)),
-        [Jet((x, 0.0, 0.0)) for x in coordinates],
+        equations.tree.values(ARRAYS, list(start.coordinates)),
+        [Jet((x, y, 0.0)) for x, y in zip(start.coordinates, start.speeds, strict=True)],
         0.0,
     )
     unit = length_unit(mechanism)
     return {
-        drive.id: float(state.drive(drive).value) / (1.0 if drive.kind == "angle" else unit)
+        drive.id: float(state.drive(drive).coefficients[order]) / (1.0 if drive.kind == "angle" else unit)
         for drive in mechanism.drives
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite
@@ -41,7 +41,14 @@ from centrode.dynamics.forward_dynamics.motion_steps import (
 )
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.initial_value_problems import HEADER, SMALLEST, STEP, TIME, InitialValueProblem
+from centrode.numerics.initial_value_problems import (
+    END,
+    HEADER,
+    SMALLEST,
+    STEP,
+    TIME,
+    InitialValueProblem,
+)
 from centrode.numerics.integrators import Integrator, integrator_of
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
@@ -63,6 +70,8 @@ DOUBTFUL = 1e-3
 """Closures that come nearer to losing rank than this, and do not, leave it doubtful how the motion goes on."""
 LOST = 1e-4
 """Closures that are no more independent than this, and no smooth motion through the place where they lose rank."""
+TOO_NEAR = 0.05
+"""A change point is passed from a place from which the fastest link turns by more than this up to it."""
 ENERGY = 1e-7
 """Energies before and behind a change point agree to this share of the kinetic energy."""
 
@@ -90,6 +99,13 @@ class MotionIntegration:
     def problem(self) -> InitialValueProblem:
         """The initial value problem, its numbers being parameters."""
         return motion_problem(self.variables.equations, self.variables.parameters)
+
+    def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
+        """The same problem for equations of the same structure with other numbers."""
+        other = MotionIntegration(equations)
+        for name in ("variables", "names", "problem", "_half_circles"):
+            other.__dict__[name] = getattr(self, name)
+        return other
 
     def integrator(self, executor: str = "auto") -> Integrator:
         """What takes steps of one mechanism, by an executor."""
@@ -181,7 +197,12 @@ class MotionIntegration:
             if time >= duration:
                 break
             if guard is not None and state[guard, 0] != 0.0:
-                passed = self._pass_change_point(parameters, state, tolerance)
+                back = self._step_back(take, parameters, state, kept, detours, rate)
+                passed = self._pass_change_point(parameters, state if back is None else back[0], tolerance)
+                if back is not None and not isinstance(passed, str) and passed[0] is not None:
+                    state, kept = back
+                elif back is not None:
+                    passed = self._pass_change_point(parameters, state, tolerance)
                 if isinstance(passed, str):
                     ended, cause = CHANGE_POINT, passed
                     break
@@ -305,6 +326,45 @@ class MotionIntegration:
     @cached_property
     def _half_circles(self) -> HalfCircles:
         return HalfCircles(self.problem)
+
+    def _step_back(
+        self,
+        take: Integrator,
+        parameters: Array,
+        state: Array,
+        kept: Sequence[Array],
+        detours: Sequence[Detour],
+        rate: float,
+    ) -> tuple[Array, list[Array]] | None:
+        """The state at a good distance before a change point that a step came too near, and the rows up to there.
+
+        Beside a change point the speeds are those of equations that have nearly lost rank, and miss by what rounding
+        makes of that. None where the distance is good already.
+        """
+        carried, names = self.problem.carried, self.names
+        place = HEADER + carried.index(AHEAD)
+        units = units_of(self.equations.tree, self.equations.numbers)
+        fast = np.abs(state[HEADER:, 0][names.part(names.speeds)]) / units
+        fastest = max(rate, float(np.max(fast, initial=0.0)))
+        time, ahead = float(state[0, 0]), float(state[place, 0])
+        if not ahead * fastest < TOO_NEAR:
+            return None
+        until = max(time + ahead - 0.5 * FAR / fastest, detours[-1].end if detours else 0.0)
+        rows = list(kept)
+        while len(rows) > 1 and rows[-1][0, 0] > until:
+            rows.pop()
+        rows[-1] = rows[-1][: max(1, int(np.searchsorted(rows[-1][:, 0], until, side="right")))]
+        row = rows[-1][-1]
+        before = np.concatenate([[row[0], until - row[0], 0.0, 0.0], row[1:]])[:, None]
+        if until > row[0]:
+            before[HEADER + carried.index(GUARD)], before[HEADER + carried.index(LIMIT)] = 0.0, NEVER
+            ended = parameters.copy()
+            ended[CONTROLS.index(END)] = until
+            between = np.empty((ROWS, len(row)))
+            before = take.run(ended, before, ROWS, between)
+            rows.append(between[: int(before[3, 0])])
+        before[place] = time + ahead - before[0]
+        return before, rows
 
     def _pass_change_point(
         self, parameters: Array, state: Array, tolerance: float

@@ -27,7 +27,7 @@ def kept_drives_of(mechanism: Mechanism, scale: float, keeps: Sequence[str]) -> 
     Raises
     ------
     NotComputedYet
-        The law of one is a table.
+        The law of one has text formulas in its segments.
     """
     if not keeps:
         return ()
@@ -39,15 +39,16 @@ def kept_drives_of(mechanism: Mechanism, scale: float, keeps: Sequence[str]) -> 
             and constraint.drive in keeps
         ):
             law = driven[constraint.drive].law
-            if not _is_formula(law):
-                what = _("a drive that keeps a law by a table is not computed here")
-                raise NotComputedYet(f"[[drives]] {constraint.drive}", what, _("give a speed or a formula"))
+            if not _is_traceable(law):
+                what = _("a drive that keeps a law with text formulas in its segments is not computed here")
+                repair = _("give a speed, a table, one formula, or segments with other curves")
+                raise NotComputedYet(f"[[drives]] {constraint.drive}", what, repair)
             found.append(KeptDrive(constraint, driven[constraint.drive]))
     return tuple(found)
 
 
-def _is_formula(law: Law) -> bool:
-    """Whether a law can be traced: a table chooses its row by the value of the time."""
+def _is_traceable(law: Law) -> bool:
+    """Whether a law can be traced: text formulas of segments are chosen by the value of the time."""
     try:
         law.jet(JetFunctions(EXPRESSIONS), Jet((variable(TIME), 1.0, 0.0)))
     except TypeError:

@@ -34,6 +34,7 @@ def map_equations(equations: EquationsOfMotion, function: Function) -> Equations
         numbers=_map_dimensions(equations.numbers, function),
         masses=tuple(_map_mass(mass, function) for mass in equations.masses),
         loads=tuple(_map_load(load, function) for load in equations.loads),
+        shafts=tuple(replace(shaft, inertia=function(shaft.inertia)) for shaft in equations.shafts),
         weights=tuple(map(function, equations.weights)),
         references=tuple(map(function, equations.references)),
     )

@@ -27,6 +27,7 @@ from centrode.numerics.initial_value_problems import (
     TIME,
     InitialValueProblem,
 )
+from centrode.numerics.unit_rotors import without_unit_squares
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -147,10 +148,12 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
     rates |= dict(zip(names.works, found.powers, strict=True))
     closing = _closing(equations, names, coordinates, speeds, time)
     watched = GUARD in closing
+    early = (*CONTROLS, *parameters)
+    turned = [(m.cos(coordinates[k]), m.sin(coordinates[k])) for k in tree.angles]
     return InitialValueProblem(
-        (*CONTROLS, *parameters),
-        {name: as_node(x) for name, x in rates.items()},
-        closing,
+        early,
+        without_unit_squares({name: as_node(x) for name, x in rates.items()}, list(rotors.values()), early),
+        without_unit_squares(closing, turned, early),
         as_node(_error(equations, names)),
         LIMIT if watched else "",
         GUARD if watched else "",

@@ -49,7 +49,7 @@ def solvable_equations(equations: EquationsOfMotion, coordinates: Array) -> tupl
         A motion is possible that moves no mass.
     """
     places = _places_near(equations, coordinates)
-    ranks = [_closure_rank(equations, place) for place in places]
+    ranks = [closure_rank(equations, place) for place in places]
     rank = max(ranks)
     if rank < equations.equations:
         generic = places[ranks.index(rank)]
@@ -95,7 +95,8 @@ def _scaled_rows(equations: EquationsOfMotion, coordinates: Array) -> Array:
     return np.asarray(rows * units / equation_units(equations.constraints, equations.numbers)[:, None])
 
 
-def _closure_rank(equations: EquationsOfMotion, coordinates: Array) -> int:
+def closure_rank(equations: EquationsOfMotion, coordinates: Array) -> int:
+    """Rank of the closures at joint coordinates (coordinates) [rad or m]."""
     rows = _scaled_rows(equations, coordinates)
     sizes = np.linalg.svd(rows, compute_uv=False) if len(rows) else np.zeros(0)
     return int(np.sum(sizes > RANK * max(sizes, default=1.0)))

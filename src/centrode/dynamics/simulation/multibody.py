@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +20,7 @@ from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.equation_of_motion import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
-from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, Status
 from centrode.kinematics.hinge_angles import spherical_coordinates
 from centrode.kinematics.motion import labels_of, vocabulary_variable
 from centrode.kinematics.path import path_of, places_of
@@ -38,6 +40,11 @@ if TYPE_CHECKING:
     from centrode.model.motion_parameter import DriveCoordinate
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+# most motions are looked at without their reactions
+_reactions = functools.partial(
+    importlib.import_module, "centrode.dynamics.simulation.reactions_in_motion"
+)
 
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
@@ -197,9 +204,6 @@ def multibody_setting(mechanism: Mechanism, settings: Simulation) -> MultibodySe
     if settings.scheme == "runge-kutta-4":
         what = _("fixed steps are those of the reduced equation")
         raise InputError("[simulation] scheme", what, _('write scheme = "adaptive"'))
-    if mechanism.machine is not None and mechanism.machine.inertia:
-        what = _("shafts and flywheels that turn with the drive belong to the reduced equation")
-        raise NotComputedYet("[machine]", what, _('write equations = "reduced", or describe them as links'))
     return MultibodySetting(mechanism, settings)
 
 
@@ -209,17 +213,20 @@ def simulate_multibody(
     at: npt.ArrayLike | None = None,
     executor: str = "auto",
     progress: Callable[[float], None] | None = None,
+    reactions: bool = False,
 ) -> xr.Dataset:
     """The labelled motion of a mechanism that is left to its loads, with any number of degrees of freedom."""
     setting = multibody_setting(mechanism, settings)
-    return multibody_dataset(setting, setting.run(at, executor, progress))
+    return multibody_dataset(setting, setting.run(at, executor, progress), reactions)
 
 
 # The result with names.
 
 
-def multibody_dataset(setting: MultibodySetting, course: Trajectory) -> xr.Dataset:
-    """The labelled result of a course."""
+def multibody_dataset(
+    setting: MultibodySetting, course: Trajectory, reactions: bool = False
+) -> xr.Dataset:
+    """The labelled result of a course, with the reactions in its joints if they are requested."""
     variables = {
         **_coordinates_in_time(setting, course),
         **_drives_in_time(setting, course),
@@ -229,7 +236,14 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory) -> xr.Datas
         **_happenings(course),
     }
     labels = _labels(setting, course)
-    return xr.Dataset(variables, label_coordinates(labels), _attributes(setting, course, variables))
+    attributes = _attributes(setting, course, variables)
+    if reactions:
+        module = _reactions()
+        found = module.reactions_in_motion(setting.free, course)
+        more, further = module.reaction_variables(setting.free, found)
+        variables, labels = variables | more, labels | further
+        attributes["worst_imbalance"] = found.imbalance
+    return xr.Dataset(variables, label_coordinates(labels), attributes)
 
 
 def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
@@ -274,17 +288,23 @@ def coordinate_names(free: FreeMotion) -> tuple[str, ...]:
 
 
 def _coordinates_in_time(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
-    units = [one.unit for one in setting.free.coordinates]
-    found: dict[str, Variable] = {}
-    for name, values, behind in (
-        ("generalised_coordinate", course.coordinates, ""),
-        ("generalised_velocity", course.speeds, "/s"),
-        ("generalised_acceleration", course.accelerations, "/s^2"),
-    ):
-        variable = vocabulary_variable(name, ("sample", "coordinate"), values)
-        variable[2]["units"] = _joined_units([f"{unit}{behind}" for unit in units])
-        found[name] = variable
-    return found
+    return {
+        name: coordinate_variable(setting.free, name, ("sample", "coordinate"), values, behind)
+        for name, values, behind in (
+            ("generalised_coordinate", course.coordinates, ""),
+            ("generalised_velocity", course.speeds, "/s"),
+            ("generalised_acceleration", course.accelerations, "/s^2"),
+        )
+    }
+
+
+def coordinate_variable(
+    free: FreeMotion, name: str, dimensions: tuple[str, ...], values: Array, behind: str
+) -> Variable:
+    """A variable of the generalised coordinates, the last dimension; `behind` follows their units."""
+    variable = vocabulary_variable(name, dimensions, values)
+    variable[2]["units"] = _joined_units([f"{one.unit}{behind}" for one in free.coordinates])
+    return variable
 
 
 def _joined_units(units: list[str]) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, tau
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -61,6 +61,7 @@ from centrode.model.simulation import MOST_TURNS, Simulation
 
 # the reduced equation needs nothing of the other route
 _multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
+_many = functools.partial(importlib.import_module, "centrode.dynamics.simulation.many_mechanisms")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -182,11 +183,7 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     """
     settings = settings or mechanism.simulation
     if settings is None:
-        raise InputError(
-            "[simulation]",
-            _("it is missing"),
-            _('give driving = "20 - 2*v" and duration, or pass ct.Simulation'),
-        )
+        raise _without_settings()
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",
@@ -213,6 +210,14 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     driving = Driving.of(settings, path.forward)
     start = path.initial if settings.start is None else settings.start
     return Setting(mechanism, settings, rows, driving, start, path.forward * settings.speed)
+
+
+def _without_settings() -> InputError:
+    return InputError(
+        "[simulation]",
+        _("it is missing"),
+        _('give driving = "20 - 2*v" and duration, or pass ct.Simulation'),
+    )
 
 
 # What a simulation found, as a labelled result.
@@ -349,8 +354,11 @@ def simulate(
     motion: bool = False,
     executor: Executor = "auto",
     progress: Tell | None = None,
+    reactions: bool = False,
+    vary: Mapping[str, Any] | None = None,
+    threads: int | None = None,
 ) -> xr.Dataset:
-    """The motion of a mechanism under its loads and what drives it.
+    """The motion of a mechanism under its loads and what drives it, or the states of many that differ in numbers.
 
     One drive that has all the mobility moves by the reduced equation; any number of degrees of freedom by the equations
     of all links with their constraints (`equations="multibody"` of the settings): its result has everything that moves.
@@ -366,11 +374,19 @@ def simulate(
     executor : "auto", "arrays" or "machine code"
         Of the equations of all links.
     progress : called with the share that is done
+    reactions : bool
+        Also the reactions in all joints at these instants, by the equations of all links; names are those of
+        `ct.reactions`, NaN where redundant constraints leave them open.
+    vary : path -> values (mechanisms), numbers [SI] or texts with a unit
+        Lengths, masses and loads of many mechanisms of one structure, integrated together by the equations of all
+        links. Each starts in the state that is nearest to the described one.
+    threads : that share them; as many as there are processors by default
 
     Returns
     -------
     Dataset
-        Value, speed and acceleration of the drive, moments, works, energies and powers over time, `occasion_...` and
+        With `vary` coordinates, velocities and energies of every `mechanism` at the instants of `at`, at the end
+        without it; `ended` says how, `reached` [s] how far each came. Otherwise value, speed and acceleration of the drive, moments, works, energies and powers over time, `occasion_...` and
         what ended it (docs: simulation). Speeds and moments count along the coordinate of the drive, `turned` in the
         sense in which it sets out.
 
@@ -388,6 +404,14 @@ def simulate(
     >>> run = ct.simulate(ct.example("six-bar-press-run-up"), settings)
     >>> run.attrs["ended"]
     'duration'
+    >>> pendulum = ct.Mechanism(
+    ...     gravity=[0, -9.81],
+    ...     frame={"points": {"O": [0, 0]}},
+    ...     links={"OA": {"length": 1, "mass": 1, "shape": "rod", "angle": 0}},
+    ... )
+    >>> many = ct.simulate(pendulum, ct.Simulation(duration="1 s"), vary={"links.OA.length": [0.5, "80 cm"]})
+    >>> many.generalised_coordinate.shape
+    (2, 1, 1)
     """
     mechanism = mechanism_of(mechanism)
     if executor not in get_args(Executor):
@@ -397,9 +421,21 @@ def simulate(
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
     settings = settings or mechanism.simulation
+    if vary is not None:
+        if settings is None:
+            raise _without_settings()
+        many: xr.Dataset = _many().simulate_many(
+            mechanism, settings, vary, at, executor, progress, threads
+        )
+        return many
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
-        run: xr.Dataset = _multibody().simulate_multibody(mechanism, settings, at, executor, progress)
+        run: xr.Dataset = _multibody().simulate_multibody(
+            mechanism, settings, at, executor, progress, reactions
+        )
         return run
+    if reactions:
+        what = _("reactions in a simulation come from the equations of all links")
+        raise InputError("reactions", what, _('write equations = "multibody" in [simulation]'))
     if executor == "machine code":
         raise InputError(
             "executor",

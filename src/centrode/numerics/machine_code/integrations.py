@@ -146,16 +146,11 @@ class _Writer:
 
     def text(self) -> str:
         self._body()
-        tables = {
-            "a": [row + (0.0,) * (STAGES - len(row)) for row in (*A, B)],
-            "c": [C],
-            "f": [FIFTH],
-            "t": [THIRD],
-        }
+        tables = {"c": C}
         return "\n".join(
             [
                 *self.block.declared,
-                *(_table(name, [x for row in rows for x in row]) for name, rows in tables.items()),
+                *(_table(name, numbers) for name, numbers in tables.items()),
                 f"define void @{FUNCTION}({', '.join(ARGUMENTS)}) {{",
                 "entry:",
                 *self.block.lines,
@@ -339,7 +334,7 @@ class _Writer:
         """Rates of all stages, then the values behind the step and the estimates of its error."""
         wide = self._widened(step)
         with self._loop("stages", STAGES) as stage:
-            self._sum(f"{stage}", stage, wide, "%stage")
+            self._sum_of_stage(stage, wide)
             share = self._splat(self._entry("c", stage), self.code.vector)
             at = self.code.multiply_add(share, step, time)
             values = {variable(TIME): at, **self._read("%stage")}
@@ -347,48 +342,60 @@ class _Writer:
             first = self.block.put(f"mul i64 {stage}, {self.length}")
             base = self._at("%rates", first)
             self._compute(operating, self.problem.of_rates, base)
-        self._sum(str(STAGES), STAGES, wide, "%stage")
-        for table, array in (("f", "%fifth"), ("t", "%third")):
-            self._weighted(table, array)
+        self._step_sum(B, wide)
+        with self._chunks() as place:
+            rates = self._used_rates(place, FIFTH, THIRD)
+            for weights, array in ((FIFTH, "%fifth"), (THIRD, "%third")):
+                self._store(self._weighted(weights, rates), self._at(array, place), self.wide)
 
-    def _sum(self, row: Value, count: Value | int, step: Value, into: Value) -> None:
-        """Put now + step times the sum of a row's weights times the rates of the stages before into an array."""
-        block, wide = self.block, self.wide
-        start = block.put(f"mul i64 {row}, {STAGES}")
-        with self._loop("chunk", self.length // wide.vector.width) as chunk:
-            place = block.put(f"mul i64 {chunk}, {wide.vector.width}")
-            total = self._stage_sum("a", start, count, place)
-            now = self._load(self._at("%now", place), wide)
-            self._store(wide.multiply_add(step, total, now), self._at(into, place), wide)
-
-    def _weighted(self, table: str, into: Value) -> None:
-        block, wide = self.block, self.wide
-        with self._loop("chunk", self.length // wide.vector.width) as chunk:
-            place = block.put(f"mul i64 {chunk}, {wide.vector.width}")
-            self._store(self._stage_sum(table, "0", STAGES, place), self._at(into, place), wide)
-
-    def _stage_sum(self, table: str, start: Value, count: Value | int, place: Value) -> Value:
-        """The sum over stages of weights times the rates at a place."""
-        block, wide = self.block, self.wide
-        before = block.label
-        head, body, done = (block.name(f"sum.{part}") for part in ("head", "body", "done"))
-        j, total = block.name("%j"), block.name("%total")
-        block.line(f"br label %{head}")
-        block.begin(head)
-        at = len(block.lines)
-        more = block.put(f"icmp slt i64 {j}, {count}")
-        block.line(f"br i1 {more}, label %{body}, label %{done}")
-        block.begin(body)
-        weight = self._splat(self._entry(table, block.put(f"add i64 {start}, {j}")), wide.vector)
-        offset = block.put(f"add i64 {block.put(f'mul i64 {j}, {self.length}')}, {place}")
-        added = wide.multiply_add(weight, self._load(self._at("%rates", offset), wide), total)
-        following = block.put(f"add i64 {j}, 1")
-        block.line(f"br label %{head}")
-        block.lines[at:at] = [
-            f"  {j} = phi i64 [ 0, %{before} ], [ {following}, %{body} ]",
-            f"  {total} = phi {wide.vector.name} [ {wide.constant(0.0)}, %{before} ], [ {added}, %{body} ]",
-        ]
+    def _sum_of_stage(self, stage: Value, step: Value) -> None:
+        """Values at which a stage has its rates: code of its own for each, without weights that are zero."""
+        block = self.block
+        names = [block.name("sum.stage") for _stage in range(STAGES)]
+        done = block.name("sum.done")
+        cases = " ".join(f"i64 {k}, label %{name}" for k, name in enumerate(names[:-1]))
+        block.line(f"switch i64 {stage}, label %{names[-1]} [ {cases} ]")
+        for name, weights in zip(names, A, strict=True):
+            block.begin(name)
+            self._step_sum(weights, step)
+            block.line(f"br label %{done}")
         block.begin(done)
+
+    def _step_sum(self, weights: Sequence[float], step: Value) -> None:
+        """Put now + step times the sum of weights times rates of stages into the values of a stage."""
+        wide = self.wide
+        with self._chunks() as place:
+            total = self._load(self._at("%now", place), wide)
+            rates = self._used_rates(place, weights)
+            if rates:
+                total = wide.multiply_add(step, self._weighted(weights, rates), total)
+            self._store(total, self._at("%stage", place), wide)
+
+    @contextmanager
+    def _chunks(self) -> Iterator[Value]:
+        """A loop over whatever is followed, as much at once as a register holds; gives the place in an array."""
+        width = self.wide.vector.width
+        with self._loop("chunk", self.length // width) as chunk:
+            yield self.block.put(f"mul i64 {chunk}, {width}")
+
+    def _used_rates(self, place: Value, *weights: Sequence[float]) -> dict[int, Value]:
+        """Rates at a place of the stages that have a weight."""
+        found = {}
+        for stage in range(STAGES):
+            if any(stage < len(row) and row[stage] for row in weights):
+                at = self._at("%rates", self.block.put(f"add i64 {place}, {stage * self.length}"))
+                found[stage] = self._load(at, self.wide)
+        return found
+
+    def _weighted(self, weights: Sequence[float], rates: Mapping[int, Value]) -> Value:
+        """The sum over stages of weights times rates."""
+        wide = self.wide
+        total: Value | None = None
+        for stage, rate in rates.items():
+            if weights[stage]:
+                weight = wide.constant(weights[stage])
+                total = wide.multiply(weight, rate) if total is None else wide.multiply_add(weight, rate, total)
+        assert total is not None
         return total
 
     def _control(self, step: Value, size: Value) -> tuple[Value, Value]:
