@@ -301,7 +301,7 @@ def direction_point(linkage: Array, attachment: float) -> Mapping[str, list[floa
     return {
         "Q": [
             float(linkage[PX] + arm * np.cos(attachment)),
-            float(linkage[PY] - arm * np.sin(-attachment)),
+            float(linkage[PY] + arm * np.sin(attachment)),
         ]
     }
 

@@ -9,8 +9,10 @@ from typing import Any, TypeAlias
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.synthesis.answers import SynthesisResults
+from centrode.synthesis.function_synthesis import function_answers
 from centrode.synthesis.path_synthesis import path_answers
-from centrode.synthesis.requests import FOUR_BARS, SynthesisTask, read_synthesis, synthesis_from
+from centrode.synthesis.pose_synthesis import pose_answers
+from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SynthesisTask, read_synthesis, synthesis_from
 
 SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
 
@@ -25,6 +27,17 @@ def task_of(source: SynthesisSource) -> SynthesisTask:
         return synthesis_from(source)
     what = _("this function takes a request of a synthesis, its file or its tables")
     raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
+
+
+def is_exact(task: SynthesisTask) -> bool:
+    """Whether poses are few enough to be met exactly, by dimensions that are all free."""
+    wanted = task.synthesis
+    return (
+        len(wanted.targets) <= MOST_POSES  # type: ignore[arg-type]
+        and wanted.timing == "free"
+        and wanted.place == "free"
+        and not wanted.free
+    )
 
 
 def synthesise(
@@ -64,6 +77,10 @@ def synthesise(
     """
     task = task_of(source)
     wanted = task.synthesis
+    if wanted.kind == "motion" and wanted.topology in FOUR_BARS and is_exact(task):
+        return pose_answers(task, progress, stop)
     if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:
         return path_answers(task, progress, stop)
+    if wanted.kind == "function" and wanted.topology in FOUR_BARS:
+        return function_answers(task, progress, stop)
     raise NotComputedYet("[synthesis]", _("this kind is not synthesised for this topology"))
