@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 from centrode.sheets.chain_atlas import ChainAtlas
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
+from centrode.sheets.curve_maps import CurveMap
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -39,4 +40,5 @@ Picture: TypeAlias = (
     | WheelPositions
     | FrontDiagram
     | ChainAtlas
+    | CurveMap
 )

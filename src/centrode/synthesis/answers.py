@@ -71,6 +71,7 @@ class Answer:
     met : (targets) complex, where the point is at the targets
     drive : (targets) angles of the crank there [rad]
     cognates : mechanisms that draw the same curve
+    deviations : (targets) errors of a function [rad] with their sign; None of other kinds
     numbers : further named numbers with their SI unit
     """
 
@@ -85,6 +86,7 @@ class Answer:
     met: Complex = field(default_factory=lambda: np.empty(0, dtype=np.complex128))
     drive: Array = field(default_factory=lambda: np.empty(0))
     cognates: tuple[Mechanism, ...] = ()
+    deviations: Array | None = None
     numbers: Mapping[str, tuple[float, str]] = field(default_factory=dict)
 
 
@@ -201,6 +203,7 @@ def four_bar_answer(
         met,
         crank,
         tuple(others),
+        errors if wanted.kind == "function" else None,
         numbers or {},
     )
 

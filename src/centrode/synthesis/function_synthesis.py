@@ -65,11 +65,18 @@ def function_answers(
             "[synthesis]", _("no linkage keeps everything that is required"), _("loosen a constraint")
         )
     answers = []
+    seen: list[tuple[float, ...]] = []
     base = wanted.length or 1.0
     for k in range(len(found.side)):
         a, b, c = found.lengths[k] * base
         linkage = np.array([0.0, 0.0, base, 0.0, a, b, c, 0.0, 0.0])
-        angles = crank + found.starts[k, 0]
+        # starts that differ by whole turns are the same
+        first = float(np.angle(np.exp(1j * found.starts[k, 0])))
+        angles = crank + first
+        row = (first, *found.lengths[k])
+        if any(np.allclose(row, other, rtol=1e-5, atol=1e-5) for other in seen):
+            continue
+        seen.append(row)
         sense = 1.0 if crank[-1] > 0 else -1.0
         answer = four_bar_answer(
             task, linkage, float(found.side[k]), angles, sense, found.errors[k], closed=False

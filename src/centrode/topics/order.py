@@ -31,6 +31,7 @@ COMMANDS = (
     "balance",
     "cam",
     "gears",
+    "synthesise",
     "centres",
     "centrodes",
     "diagrams",

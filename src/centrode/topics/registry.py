@@ -1090,6 +1090,14 @@ GEAR_PAIR = Topic(
     subject="gear pair",
 )
 
+SYNTHESIS = Topic(
+    name="synthesis",
+    compute=Lazily("centrode.synthesis.synthesise", "synthesise"),
+    result=Lazily("centrode.synthesis.answers", "SynthesisResults"),
+    view=Lazily("centrode.views.synthesis", "sheet"),
+    subject="synthesis",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1106,6 +1114,7 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_MOTION,
     MOTION_LAWS,
     GEAR_PAIR,
+    SYNTHESIS,
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,

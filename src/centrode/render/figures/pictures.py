@@ -14,6 +14,7 @@ from centrode.render.drawing.walking_wheel import wheel_figure
 from centrode.render.figures.areas import area_figure
 from centrode.render.figures.chain_atlas import atlas_figure
 from centrode.render.figures.charts import bar_figure, front_figure, hodograph_figure, linkage_figure
+from centrode.render.figures.curve_maps import map_figure
 from centrode.render.figures.files import save_figures
 from centrode.render.figures.linkages import mechanism_figure, paths_figure
 from centrode.render.figures.outlines import outline_figure, path_figure
@@ -31,6 +32,7 @@ from centrode.render.pages.vector_diagrams import vector_diagram_figure
 from centrode.render.pages.vectors import vector_page
 from centrode.sheets.chain_atlas import ChainAtlas
 from centrode.sheets.charts import BarChart, FrontDiagram, Hodograph, LinkageWithDiscs
+from centrode.sheets.curve_maps import CurveMap
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -131,5 +133,7 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return front_figure(picture, display)
             case ChainAtlas():
                 return atlas_figure(picture, display)
+            case CurveMap():
+                return map_figure(picture, display)
             case _:
                 assert_never(picture)
