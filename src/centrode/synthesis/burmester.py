@@ -11,6 +11,7 @@ G. S. Soh, Geometric Design of Linkages, 2nd ed., 2011, chapter 5).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import eig
@@ -173,7 +174,7 @@ def four_pose_dyads(poses: Poses, places: int = CURVE_PLACES) -> Dyads:
         turns_minor(turns, shifts, 0, 1),
     ]
     first = -sum(determinants)
-    angle = np.linspace(0.0, 2 * np.pi, places, endpoint=False)
+    angle = _angles_of_curve(first, determinants, places)
     swung = np.exp(1j * angle)
     side = -first - determinants[0] * swung
     second, third = abs(determinants[1]), abs(determinants[2])
@@ -198,14 +199,36 @@ def four_pose_dyads(poses: Poses, places: int = CURVE_PLACES) -> Dyads:
             link = (shifts[0] * rows[:, 1, 1] - rows[:, 0, 1] * shifts[1]) / determinant
             origin = (rows[:, 0, 0] * shifts[1] - rows[:, 1, 0] * shifts[0]) / determinant
         # the plane's origin lies at 0 in the first pose: w + z = 0
-        moving.append(-origin)
-        fixed.append(-origin - link)
+        # the second branch is run through backwards: both meet where the four-bar linkage of the turns stands stretched
+        run = slice(None, None, 1 if sign > 0 else -1)
+        moving.append((-origin)[run])
+        fixed.append((-origin - link)[run])
     joined = Dyads(np.concatenate(moving), np.concatenate(fixed))
     far = FAR * poses.size
     wild = ~(np.abs(joined.moving) + np.abs(joined.fixed) < far)
     joined.moving[wild] = complex(np.nan, np.nan)
     joined.fixed[wild] = complex(np.nan, np.nan)
     return joined
+
+
+def _angles_of_curve(first: complex, determinants: list[complex], places: int) -> Array:
+    """Crank angles of the linkage of the turns, dense towards the ends of the intervals in which it closes."""
+    least = abs(abs(determinants[1]) - abs(determinants[2]))
+    most = abs(determinants[1]) + abs(determinants[2])
+    # |first + D2 e^(i b)| passes the least and the greatest reach at these angles
+    ends = []
+    size, mean = 2 * abs(first) * abs(determinants[0]), abs(first) ** 2 + abs(determinants[0]) ** 2
+    middle = float(np.angle(first / determinants[0]))
+    for reach in (least, most):
+        cosine = (reach**2 - mean) / size
+        if abs(cosine) < 1:
+            ends += [middle - np.arccos(cosine), middle + np.arccos(cosine)]
+    if not ends:
+        return np.linspace(0.0, 2 * np.pi, places)
+    bounds = np.sort(np.mod(ends, 2 * np.pi))
+    bounds = np.append(bounds, bounds[0] + 2 * np.pi)
+    share = 0.5 - 0.5 * np.cos(np.linspace(1e-4, np.pi - 1e-4, max(places // len(ends), 8)))
+    return np.concatenate([low + (high - low) * share for low, high in pairwise(bounds)])
 
 
 def turns_minor(turns: Complex, shifts: Complex, j: int, k: int) -> complex:

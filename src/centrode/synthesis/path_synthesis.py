@@ -94,12 +94,13 @@ def path_answers(
     scaled = (points - middle) / size
     problem = _problem(wanted, Targets(scaled, directions, drive), middle, size)
     lanes = _candidates(wanted, problem, closed, wanted.seed)
+    examined = len(lanes.side)
     lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop)
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
         raise _nothing(wanted, nearest_miss)
     return SynthesisResults(
-        task, tuple(answers), points, closed, examined=len(lanes.side), complete=not stop()
+        task, tuple(answers), points, closed, examined=examined, complete=not stop()
     )
 
 

@@ -36,6 +36,8 @@ REACH = 2.5
 """Of that grid, in sizes of the poses."""
 MOST_RATIO = 20.0
 """Of lengths, where the request gives none."""
+GOOD_TRANSMISSION, ALIKE = math.radians(50), math.radians(10)
+"""A transmission angle beyond which more is not better, and a difference that does not count."""
 WAY = 91
 """Crank angles at which the way between poses is looked at before the engine proves it."""
 
@@ -156,7 +158,9 @@ def _chosen(
     clean = one_side & ordered & passes
     if constraints.order:
         good &= clean
-    rank = np.lexsort((-np.nan_to_num(transmission), ~clean))
+    # of linkages that transmit nearly alike the smaller one comes first
+    grade = np.floor(np.minimum(np.nan_to_num(transmission), GOOD_TRANSMISSION) / ALIKE)
+    rank = np.lexsort((ratio.sum(axis=1), -grade, ~clean))
     answers: list[Answer] = []
     kept: list[int] = []
     for k in rank[good[rank]].tolist():
@@ -225,7 +229,7 @@ def _along(
 
 def _near(linkage: Array, other: Array, size: float) -> bool:
     """Whether two linkages are nearly the same, or the same with crank and rocker exchanged."""
-    near = 0.25 * size
+    near = 0.5 * size
     exchanged = other[[2, 3, 0, 1, 6, 5, 4]]
     return bool(
         np.abs(linkage[:7] - other[:7]).max() < near or np.abs(linkage[:7] - exchanged).max() < near
