@@ -1,4 +1,4 @@
-"""Answers of a synthesis: mechanisms with what they miss, how well they transmit, and whether they are free of defects."""
+"""Answers of a synthesis: mechanisms with what they miss, how they transmit, and their defects."""
 
 from __future__ import annotations
 
@@ -103,7 +103,6 @@ class SynthesisResults:
     examined : linkages that the search began with
     complete : False where it was stopped before its end
     curves : of poses: name -> complex points of the centre and circle point curves
-    trade_off : (size or transmission angle, error) of the best mechanisms for each, or None
     values : (n, 2) crank and rocker angles [rad] that a function should have
     """
 
@@ -114,7 +113,6 @@ class SynthesisResults:
     examined: int = 0
     complete: bool = True
     curves: Mapping[str, Complex] = field(default_factory=dict)
-    trade_off: Array | None = None
     values: Array | None = None
 
     @property

@@ -1,8 +1,8 @@
 """Poses of a moving plane: points of it that stay on a circle, and the centres of these circles.
 
 A pose j takes a point w of the plane from its place in the first pose to A_j w + d_j. It stays on a circle about g
-through all poses where |A_j w + d_j - g|^2 is the same for all of them. Less that of the first pose this is bilinear in w
-and g: |d|^2/2 + Re(conj(d) A w) - Re(conj(g) (A w + d - w)) = 0, with the first pose as the origin of both. Two poses
+through all poses where |A_j w + d_j - g|^2 is the same for all of them. Less that of the first pose this is bilinear in
+w and g: |d|^2/2 + Re(conj(d) A w) - Re(conj(g) (A w + d - w)) = 0, with the first pose as the origin of both. Two poses
 leave w and g with three degrees of freedom, three with two, four with one (the circle point curve and the centre point
 curve, both circular cubics), five leave at most four pairs (L. Burmester, Lehrbuch der Kinematik, 1888; J. M. McCarthy,
 G. S. Soh, Geometric Design of Linkages, 2nd ed., 2011, chapter 5).
@@ -247,9 +247,7 @@ def three_pose_moving_points(poses: Poses, fixed: Complex) -> Complex:
 def three_pose_centres(poses: Poses, moving: Complex) -> Complex:
     """Centres (n) of the circles through three places of moving points (n), which are given in the first pose."""
     by_u, by_v, base = _matrices(poses)
-    matrix = (
-        moving.real[:, None, None] * by_u + moving.imag[:, None, None] * by_v + base
-    )
+    matrix = moving.real[:, None, None] * by_u + moving.imag[:, None, None] * by_v + base
     return _solved(matrix[:, :, :2], -matrix[:, :, 2])
 
 

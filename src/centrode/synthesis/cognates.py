@@ -1,6 +1,6 @@
-"""Cognates: the two other four-bar linkages that draw the same coupler curve (S. Roberts, Proc. London Math. Soc. 7, 1875).
+"""Cognates: the two other four-bar linkages that draw the same coupler curve.
 
-With k = p/b, the place of the coupler point as a complex number in units of the coupler, the third fixed hinge is
+S. Roberts, Proc. London Math. Soc. 7, 1875. With k = p/b, the place of the coupler point as a complex number in units of the coupler, the third fixed hinge is
 E = O + k (D - O). One cognate hangs between O and E, the other between D and E; each has a coupler triangle similar to
 the first.
 """
@@ -13,7 +13,7 @@ from centrode.synthesis.four_bars import COUPLER, CRANK, DX, DY, OX, OY, PX, PY,
 
 
 def cognates(linkage: Array, side: float, crank: float) -> list[tuple[Array, float, float]]:
-    """Both cognates of one linkage: dimensions (9,), side, and the angle of their crank where that of the linkage is given.
+    """Both cognates of one linkage: dimensions (9,), side, and the angle of their crank.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """An atlas of coupler curves: shapes by which a target curve finds linkages that draw something like it.
 
-A closed curve, run through at constant speed, is a sum of rotating vectors c_k exp(i k t). Where it starts only turns the
-phases of c_k, a turn of the curve turns all of them, its size scales them and its place is c_0. So the magnitudes |c_k|
+A closed curve, run through at constant speed, is a sum of rotating vectors c_k exp(i k t). Where it starts only turns
+the phases of c_k, a turn of the curve turns all of them, its size scales them and its place is c_0. So the magnitudes |c_k|
 of k other than 0, divided by their root sum of squares, describe the shape alone; a mirrored curve and one that is run
 through backwards have them in the opposite order of k (C. T. Zahn, R. Z. Roskies, IEEE Trans. Computers C-21, 1972,
 269-281; J. R. McGarva, G. Mullineux, Mech. Mach. Theory 28, 1993).

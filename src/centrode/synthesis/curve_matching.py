@@ -13,7 +13,7 @@ from centrode.synthesis.four_bars import Array, Complex, coupler_motion, mirrore
 from centrode.synthesis.least_squares import PHASE, VARIABLES, Lanes
 
 CANDIDATES = 500
-ARC_SHAPES = 8000
+ARC_SHAPES = 5000
 """Linkages of the atlas whose arcs are compared with an open path."""
 ARC_PLACES = 12
 ARC_WIDTHS = (5, 7, 9, 12, 16, 21, 28, 37, 48)
@@ -120,7 +120,9 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
                     start = int(np.argmin(miss[index]))
                     found.append((float(flat[index]), index, int(starts[start]), width, mirror, backwards))
     found.sort()
-    made = [_arc_placed(book, int(chosen[index]), points, shares, *rest) for _miss, index, *rest in found[:count]]
+    made = [
+        _arc_placed(book, int(chosen[index]), points, shares, *rest) for _miss, index, *rest in found[:count]
+    ]
     return Lanes(
         np.concatenate([one[0] for one in made]),
         np.array([one[1] for one in made]),
@@ -130,7 +132,14 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
 
 
 def _arc_placed(
-    book: Atlas, index: int, points: Complex, shares: Array, start: int, width: int, mirror: bool, backwards: bool
+    book: Atlas,
+    index: int,
+    points: Complex,
+    shares: Array,
+    start: int,
+    width: int,
+    mirror: bool,
+    backwards: bool,
 ) -> tuple[Array, float, Array, float]:
     places = start + width * (1 - shares if backwards else shares)
     crank = np.interp(
@@ -220,5 +229,3 @@ def random_candidates(
     crank = np.unwrap(turn[np.argmin(distance, axis=1)], axis=1)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
     return Lanes(variables, side, crank, sense)
-
-

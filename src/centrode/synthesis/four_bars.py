@@ -2,7 +2,7 @@
 
 A lane of arrays is one linkage O-A-B-D in the complex plane: fixed hinges O and D, crank OA of length a, coupler AB of
 length b, rocker DB of length c, and P at p from A in the axes of the coupler, whose x axis points from A to B. Its nine
-dimensions stand in one row in the order of `DIMENSIONS`; the tenth variable of a fit is the phase of given crank angles.
+dimensions stand in one row in the order of `DIMENSIONS`; the tenth variable of a fit is the phase of crank angles.
 """
 
 from __future__ import annotations
@@ -99,9 +99,7 @@ def coupler_slopes(linkages: Array, crank: Array, motion: CouplerMotion) -> Coup
     zero = np.zeros_like(turned)
     # How A, B without the turn of the coupler, and D move with each dimension.
     by_joint = np.stack([one, 1j * one, zero, zero, turned, zero, zero, zero, zero], axis=-1)
-    pulls = np.stack(
-        [one, 1j * one, -one, -1j * one, turned, direction, zero, zero, zero], axis=-1
-    )
+    pulls = np.stack([one, 1j * one, -one, -1j * one, turned, direction, zero, zero, zero], axis=-1)
     angle = -(bar[..., None] * pulls).real / leverage[..., None]
     angle[..., ROCKER] += c / leverage
     point = by_joint + (1j * direction * p)[..., None] * angle
@@ -127,6 +125,7 @@ def _parts(linkages: Array) -> tuple[Complex, Complex, Array, Array, Array, Comp
 def lengths(linkages: Array) -> Array:
     """Ground, crank, coupler and rocker (lanes, 4) [m]."""
     ground = np.hypot(linkages[:, DX] - linkages[:, OX], linkages[:, DY] - linkages[:, OY])
+    ground = np.maximum(ground, 1e-12)
     return np.column_stack([ground, linkages[:, CRANK], linkages[:, COUPLER], linkages[:, ROCKER]])
 
 

@@ -3,8 +3,8 @@
 With phi and psi the angles of crank and rocker from the frame, Freudenstein's equation
 K1 cos psi - K2 cos phi + K3 = cos(phi - psi) is linear in K1 = d/a, K2 = d/c and K3 = (a^2 - b^2 + c^2 + d^2)/(2 a c)
 (F. Freudenstein, Trans. ASME 76, 1954, 483-492; 77, 1955, 853-861). Three precision points give the three numbers. Four
-are possible where a determinant of four rows vanishes, which is c0 + c1 cos 2 psi0 + c2 sin 2 psi0 in the starting angle
-of the rocker; five where two such determinants vanish, which leaves one equation of eighth degree in the starting angle
+are possible where a determinant of four rows vanishes, which is c0 + c1 cos 2 psi0 + c2 sin 2 psi0 in the starting
+angle of the rocker; five where two such determinants vanish, which leaves one equation of eighth degree in the starting angle
 of the crank.
 """
 
@@ -21,7 +21,7 @@ from centrode.synthesis.four_bars import Array
 GRID = 48
 """Starting angles of each side that are tried."""
 KEPT = 60
-REFINED = 8
+REFINED, LAST = 8, 2
 SAMPLES = 61
 LEAST_RATIO, GREATEST_RATIO = 0.02, 50.0
 """Of a link to the frame."""
@@ -46,7 +46,7 @@ class FunctionLinkages:
 
 
 def rocker_angles(lengths: Array, side: Array, crank: Array) -> tuple[Array, Array]:
-    """Angles of the rocker (lanes, n) [rad] at angles of the crank, and radicands that are negative where it is open."""
+    """Angles of the rocker (lanes, n) [rad] at angles of the crank, and radicands, negative where it is open."""
     a, b, c = (lengths[:, k, None] for k in range(3))
     joint = a * np.exp(1j * crank)
     line = 1.0 - joint
@@ -141,8 +141,8 @@ def _through(crank: Array, rocker: Array, starts: Array) -> FunctionLinkages:
 def five_points(crank: Array, rocker: Array) -> FunctionLinkages:
     """All real linkages through five pairs of angles.
 
-    Both determinants are linear in cos 2 psi0 and sin 2 psi0, whose squares add up to one: a trigonometric polynomial of
-    fourth degree in 2 phi0, whose real roots are those of a polynomial of eighth degree on the unit circle.
+    Both determinants are linear in cos 2 psi0 and sin 2 psi0, whose squares add up to one: a trigonometric polynomial
+    of fourth degree in 2 phi0, whose real roots are those of a polynomial of eighth degree on the unit circle.
     """
     first, second = [0, 1, 2, 3], [0, 1, 2, 4]
     count = 16
@@ -236,8 +236,8 @@ def least_errors(
             break
     refined = []
     for count, k in enumerate(chosen):
-        refined.append(_least_greatest(variables[k], float(side[k]), crank, rocker, keeps))
-        progress(0.5 + 0.5 * (count + 1) / len(chosen))
+        refined.append(_descended(variables[k], float(side[k]), crank, rocker, keeps))
+        progress(0.5 + 0.3 * (count + 1) / len(chosen))
         if stop():
             break
     chosen = chosen[: len(refined)]
@@ -245,6 +245,12 @@ def least_errors(
         none = np.empty((0, len(crank)))
         return FunctionLinkages(np.empty((0, 2)), np.empty((0, 3)), np.empty(0), none)
     variables, side = np.stack(refined), side[chosen]
+    order = np.argsort(_worst(variables, side, crank, rocker), kind="stable")
+    variables, side = variables[order], side[order]
+    for k in range(min(LAST, len(side))):
+        if not stop():
+            variables[k] = _least_greatest(variables[k], float(side[k]), crank, rocker, keeps)
+        progress(0.8 + 0.2 * (k + 1) / LAST)
     order = np.argsort(_worst(variables, side, crank, rocker), kind="stable")
     variables, side = variables[order], side[order]
     errors = angle_errors(variables[:, :2], variables[:, 2:], side, crank, rocker)
@@ -336,7 +342,11 @@ def _descended(
         bound = np.vstack([np.hstack([slopes, -one]), np.hstack([-slopes, -one])])
         limits = [(-region, region)] * 2 + [(-region * x, region * x) for x in variables[2:]] + [(0.0, None)]
         solved = linprog(
-            [0, 0, 0, 0, 0, 1], A_ub=bound, b_ub=np.concatenate([-errors, errors]), bounds=limits, method="highs"
+            [0, 0, 0, 0, 0, 1],
+            A_ub=bound,
+            b_ub=np.concatenate([-errors, errors]),
+            bounds=limits,
+            method="highs",
         )
         if not solved.success:
             break

@@ -135,9 +135,7 @@ def _keeps(wanted: Synthesis) -> Keeps:
     """Whether linkages with the frame 1 keep the constraints."""
     constraints = wanted.constraints
 
-    def keeps(
-        starts: Array, sizes: Array, side: Array
-    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    def keeps(starts: Array, sizes: Array, side: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
         linkages = np.zeros((len(sizes), 9))
         linkages[:, 2], linkages[:, 4:7] = 1.0, sizes
         good = np.ones(len(sizes), dtype=bool)

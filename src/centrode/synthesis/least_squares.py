@@ -129,7 +129,9 @@ class Lanes:
             np.concatenate([self.side, other.side]),
             np.concatenate([self.crank, other.crank]),
             np.concatenate([self.sense, other.sense]),
-            np.concatenate([own if self.first is None else self.first, others if other.first is None else other.first]),
+            np.concatenate(
+                [own if self.first is None else self.first, others if other.first is None else other.first]
+            ),
             np.concatenate([self.errors, other.errors]),
             np.concatenate([self.violation, other.violation]),
         )
@@ -234,7 +236,9 @@ def least_squares(
         variables[taken], crank[taken], cost[taken] = proposed[better], turned[better], found[better]
         damping[moving] = np.where(better, damping[moving] * 0.2, damping[moving] * 6.0)
         damping[moving] = np.clip(damping[moving], 1e-14, 1e16)
-        poor[moving] = np.where(small & (better | (damping[moving] > 1e6)), poor[moving] + 1, poor[moving] * small)
+        poor[moving] = np.where(
+            small & (better | (damping[moving] > 1e6)), poor[moving] + 1, poor[moving] * small
+        )
         moving = moving[(poor[moving] < 3) & (damping[moving] < 1e12) & (cost[moving] > 1e-30)]
     _total, errors, violation = _cost(problem, variables, side, crank)
     return Lanes(variables, side, crank, start.sense, start.first, errors, violation)
@@ -265,7 +269,7 @@ def _step(
     """One damped step of the variables (lanes, 11) and of the crank angles (lanes, n)."""
     rows, _closes = _residuals(problem, variables, side, crank)
     by, turn = _slopes(problem, variables, side, crank)
-    lanes, n = crank.shape
+    lanes = len(crank)
     flat = by.reshape(lanes, -1, VARIABLES)
     transposed = flat.transpose(0, 2, 1)
     normal = transposed @ flat
@@ -312,7 +316,9 @@ def _step(
     # (M. K. Transtrum, J. P. Sethna, arXiv:1201.5885, 2012).
     part = 0.1
     ahead, _closes = _residuals(problem, variables + part * step, side, crank + part * turned)
-    straight = np.einsum("lnri,li->lnr", by, step) + turn * (turned if free_crank else 0.0 * turned)[..., None]
+    straight = (
+        np.einsum("lnri,li->lnr", by, step) + turn * (turned if free_crank else 0.0 * turned)[..., None]
+    )
     bend = 2.0 / part * ((ahead - rows) / part - straight)
     gradient = (transposed @ bend.reshape(lanes, -1, 1))[..., 0]
     if free_crank:

@@ -49,8 +49,9 @@ from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
 
 CRANK_MARGIN = 1e-4
 """Of Grashof's rule, in units of frame and crank: a crank that only just turns is none."""
+OPEN_CANDIDATES = 320
 RANDOM_STARTS = 1500
-BOX_PLACES = 36
+BOX_PLACES = 24
 """Crank angles at which the box around a mechanism is looked at."""
 MET = 1e-6
 """A constraint holds up to this part."""
@@ -99,9 +100,7 @@ def path_answers(
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
         raise _nothing(wanted, nearest_miss)
-    return SynthesisResults(
-        task, tuple(answers), points, closed, examined=examined, complete=not stop()
-    )
+    return SynthesisResults(task, tuple(answers), points, closed, examined=examined, complete=not stop())
 
 
 def _is_closed(wanted: Synthesis, points: Complex) -> bool:
@@ -230,9 +229,9 @@ def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) ->
     elif closed:
         lanes = closed_candidates(targets.points)
     else:
-        lanes = open_candidates(targets.points)
+        lanes = open_candidates(targets.points, OPEN_CANDIDATES)
     bounded = np.isfinite(problem.low[:9]) & np.isfinite(problem.high[:9])
-    if wanted.place == "given" or bounded.any() or len(targets.points) < 6:
+    if wanted.place == "given" or bounded[CRANK:].any() or len(targets.points) < 6:
         random = np.random.default_rng(seed)
         low, high = problem.low.copy(), problem.high.copy()
         low[PHASE:], high[PHASE:] = 0.0, 0.0
@@ -276,7 +275,8 @@ def _answers(
         further = None
         if problem.targets.directions is not None:
             turn = np.angle(
-                motion.direction[0] * np.exp(1j * (lanes.variables[k, ATTACHMENT] - problem.targets.directions))
+                motion.direction[0]
+                * np.exp(1j * (lanes.variables[k, ATTACHMENT] - problem.targets.directions))
             )
             numbers["turn_error"] = (float(np.abs(turn).max()), "rad")
             further = direction_point(linkage, lanes.variables[k, ATTACHMENT])
@@ -321,8 +321,8 @@ def _nothing(wanted: Synthesis, miss: float) -> MotionError:
     what = _("no linkage keeps everything that is required")
     repair = _("loosen a constraint or a range")
     if np.isfinite(miss):
-        repair = _("without it the nearest misses the targets by {miss:.3g} m; loosen a constraint or a range")
+        repair = _(
+            "without it the nearest misses the targets by {miss:.3g} m; loosen a constraint or a range"
+        )
         repair = repair.format(miss=miss)
     return MotionError("[synthesis]", what, repair)
-
-

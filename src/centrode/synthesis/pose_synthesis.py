@@ -111,10 +111,10 @@ def _free_dyads(poses: Poses) -> Dyads:
         good = np.abs(fixed - poses.places.mean()) < 10 * size
         return Dyads(grid[good], fixed[good])
     # Of two poses each centre lies on the perpendicular bisector of a point's two places.
-    grid = grid[::3]
+    grid = grid[::5]
     image = poses.turns[0] * grid + poses.shifts[0]
     across = 1j * (image - grid)
-    away = np.array([-2.0, -1.0, -0.5, 0.5, 1.0, 2.0])
+    away = np.array([-1.5, -0.6, 0.6, 1.5])
     fixed = (grid + image)[:, None] / 2 + across[:, None] * away
     return Dyads(np.repeat(grid, len(away)), fixed.ravel())
 
@@ -231,9 +231,7 @@ def _near(linkage: Array, other: Array, size: float) -> bool:
     """Whether two linkages are nearly the same, or the same with crank and rocker exchanged."""
     near = 0.5 * size
     exchanged = other[[2, 3, 0, 1, 6, 5, 4]]
-    return bool(
-        np.abs(linkage[:7] - other[:7]).max() < near or np.abs(linkage[:7] - exchanged).max() < near
-    )
+    return bool(np.abs(linkage[:7] - other[:7]).max() < near or np.abs(linkage[:7] - exchanged).max() < near)
 
 
 def _answer(

@@ -56,7 +56,6 @@ STROKE_TOPOLOGIES = (
     "whitworth-quick-return",
     "six-bar-press",
 )
-SPHERICAL = "spherical-four-bar"
 TOPOLOGIES = tuple(dict.fromkeys((*FOUR_BARS, *STROKE_TOPOLOGIES)))
 MOST_FREE = 40
 MOST_TARGETS = 2000
@@ -145,9 +144,7 @@ class Constraints(DescriptionPart):
     order: Flag = True
     length_ratio: Annotated[float, PlainValidator(_ratio)] | None = None
     pivots: PivotBox = PivotBox()
-    size: (
-        Annotated[tuple[float, ...], PlainValidator(lambda value: _size(value))] | None
-    ) = None
+    size: Annotated[tuple[float, ...], PlainValidator(lambda value: _size(value))] | None = None
 
 
 def _size(value: object) -> tuple[float, ...]:
@@ -155,19 +152,6 @@ def _size(value: object) -> tuple[float, ...]:
     if min(width, height) <= 0:
         raise Problem(_("a box has a positive width and height"))
     return width, height
-
-
-class Dwell(DescriptionPart):
-    """A rest of the output.
-
-    Attributes
-    ----------
-    value : how far it may move meanwhile [m]
-    range : of the crank [rad] over which it rests
-    """
-
-    value: Annotated[float, quantity("length", positive)]
-    range: Annotated[float, quantity("angle", positive)]
 
 
 class Synthesis(DescriptionPart):
@@ -180,18 +164,19 @@ class Synthesis(DescriptionPart):
     point : traced point of a path
     link : that is led through poses
     of : what a function gives, as "angle.DB"
-    targets : rows [SI]; of a path x, y and the drive's angle, of a motion x, y, angle of the link and of the drive, of a
-        function the angles of crank and rocker
+    targets : rows [SI]; of a path x, y and the drive's angle, of a motion x, y, angle of the link and of the drive, of
+        a function the angles of crank and rocker
     formula : y(x) of a function, over x
     swings : of crank and rocker [rad] over the range of a function
     timing : whether crank angles are free, given, or given but for their zero
     place : whether the mechanism may stand anywhere, or only where `free` leaves it
     closed : whether a path is closed; None: as its points look
     exact : of a function: how many precision points, None for the least greatest error
-    pivots : given fixed hinges [m] of three poses
+    hinges : given fixed hinges [m] of three poses
     free : path -> least and greatest value [SI]
-    guide, stroke, time_ratio, transmission, swing, dwell : of strokes
-    trade_off : "size" or "transmission": best errors over its values as well
+    guide, stroke, time_ratio, transmission, swing : of strokes
+    length : of the frame of a function, of the rocker of a crank-rocker, of the frame or the crank of a quick
+        return [m]
     answers : at most so many
     seed : of random starts
     """
@@ -210,9 +195,9 @@ class Synthesis(DescriptionPart):
     closed: Flag | None = None
     exact: Annotated[int, whole_number(3, 5)] | None = None
     hinges: Annotated[tuple[tuple[float, float], ...], BeforeValidator(lambda v: _hinges(v))] | None = None
-    free: Annotated[
-        Mapping[str, Any], BeforeValidator(_read_free), AfterValidator(FrozenMap[str, Any])
-    ] = FrozenMap({})
+    free: Annotated[Mapping[str, Any], BeforeValidator(_read_free), AfterValidator(FrozenMap[str, Any])] = (
+        FrozenMap({})
+    )
     constraints: Constraints = Constraints()
     guide: Name | None = None
     stroke: Annotated[float, quantity("length", positive)] | None = None
@@ -220,8 +205,6 @@ class Synthesis(DescriptionPart):
     transmission: Annotated[float, quantity("angle", _transmission)] | None = None
     swing: Annotated[float, quantity("angle", positive)] | None = None
     length: Annotated[float, quantity("length", positive)] | None = None
-    dwell: Dwell | None = None
-    trade_off: Annotated[Literal["size", "transmission"], choice("size", "transmission")] | None = None
     answers: Annotated[int, whole_number(1, MOST_ANSWERS)] = MOST_ANSWERS
     seed: Annotated[int, whole_number(0, 2**31)] = 0
 

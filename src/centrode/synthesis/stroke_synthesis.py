@@ -29,6 +29,8 @@ from centrode.synthesis.strokes import (
 OFF_ROUND = 0.0123
 PARTS, ROUNDS = 60, 7
 """Limit positions are enclosed in a part of so many of their cell, so many times."""
+FAIR = 0.6
+"""Of the best transmission angle, which answers have at least where nobody gives one."""
 SWING = math.radians(60)
 """Of the rocker of a press, where nobody gives one."""
 
@@ -153,7 +155,9 @@ def _slider_crank(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
         frame={"points": {"O": [0.0, 0.0]}},
         links={"OA": {"length": found.crank}, f"A{name}": {"length": found.coupler}},
         guides=[{"point": name, "on": "frame", "through": [0.0, found.offset], "direction": [1.0, 0.0]}],
-        drives=[{"link": "OA", "start": math.asin(found.offset / (found.crank + found.coupler)), "speed": 1.0}],
+        drives=[
+            {"link": "OA", "start": math.asin(found.offset / (found.crank + found.coupler)), "speed": 1.0}
+        ],
         assembly={"sides": {name: "ahead"}},
     )
     return mechanism, found.transmission
@@ -215,7 +219,8 @@ def _chosen_rockers(wanted: Synthesis, ratio: float, swing: float, rocker: float
     if not found:
         what = _("no crank-rocker has this swing and this time ratio")
         raise MotionError("[synthesis]", what, _("reduce one of them"))
-    kept = [one for one in found if one.transmission >= (wanted.transmission or 0.0) - 1e-9]
+    least = FAIR * found[0].transmission if wanted.transmission is None else wanted.transmission
+    kept = [one for one in found if one.transmission >= least - 1e-9]
     if not kept:
         raise _too_poor(found[0].transmission)
     return list(evenly(kept, wanted.answers))
@@ -270,9 +275,7 @@ def _presses(task: SynthesisTask, ratio: float) -> list[tuple[Mechanism, float]]
                 },
                 f"D{name}": {"length": link, "angle": f"{slant!r} rad"},
             },
-            guides=[
-                {"point": name, "on": "frame", "through": [0.0, arm - sagitta], "direction": [1.0, 0.0]}
-            ],
+            guides=[{"point": name, "on": "frame", "through": [0.0, arm - sagitta], "direction": [1.0, 0.0]}],
             drives=[{"link": "OA", "start": f"{start!r} rad", "speed": 1.0}],
         )
         answers.append((mechanism, min(one.transmission, math.acos(sagitta / link))))

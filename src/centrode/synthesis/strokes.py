@@ -1,9 +1,9 @@
 """Mechanisms from strokes: closed forms for a stroke or swing, a time ratio and a transmission angle.
 
 With the time ratio K of the slow to the fast stroke the crank turns by 180 deg + theta and 180 deg - theta,
-theta = 180 deg (K - 1)/(K + 1). In the two limit positions crank and coupler lie in one line, so that the fixed hinge O of
-the crank sees both ends of the stroke at the angle theta, at the distances b + a and b - a (H. Alt, VDI-Z 85, 1941, 69-72;
-VDI 2130). What is left free is one angle, beta at the outer end of the stroke:
+theta = 180 deg (K - 1)/(K + 1). In the two limit positions crank and coupler lie in one line, so that the fixed hinge O
+of the crank sees both ends of the stroke at the angle theta, at the distances b + a and b - a (H. Alt, VDI-Z 85, 1941,
+69-72; VDI 2130). What is left free is one angle, beta at the outer end of the stroke:
 b + a = s sin(beta + theta)/sin theta and b - a = s sin beta/sin theta.
 """
 
@@ -69,7 +69,7 @@ def _arms(stroke: float, theta: float, beta: Array) -> tuple[Array, Array]:
 
 
 def slider_crank(stroke: float, time_ratio: float, transmission: float | None) -> SliderCrank | None:
-    """The slider-crank of a stroke [m], a time ratio and a least transmission angle [rad]; the best one if that is None.
+    """The slider-crank of a stroke [m], a time ratio and a least transmission angle [rad], or the best one.
 
     Of the two with a given angle that with the shorter coupler. None where the time ratio allows no such angle.
     """
@@ -211,9 +211,7 @@ class SlottedLever:
     transmission: float
 
 
-def shaper(
-    stroke: float, time_ratio: float, frame: float | None, transmission: float | None
-) -> SlottedLever:
+def shaper(stroke: float, time_ratio: float, frame: float | None, transmission: float | None) -> SlottedLever:
     """A shaper of a stroke [m]: the lever swings by theta, so a = d sin(theta/2) and DB = H/(2 sin(theta/2)).
 
     The guide lies midway between the highest and the lowest place of B.

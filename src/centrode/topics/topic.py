@@ -249,8 +249,8 @@ class Topic:
     command : None where only documents and Python have the topic
     document : its chapters
     subject : "mechanism"; "cam": those have one command together, with the options of all of them; "gear pair";
-        "synthesis": a request that mechanisms answer; "mechanisms": many of one structure, whose commands read a file of
-        their own and go on with what is in a folder
+        "synthesis": a request that mechanisms answer; "mechanisms": many of one structure, whose commands read a file
+        of their own and go on with what is in a folder
     flag : option of that command without which it leaves the topic out
     restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
         computation has no dataset that says everything

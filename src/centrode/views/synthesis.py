@@ -13,12 +13,10 @@ from centrode.sheets.curve_maps import CurveMap, MapCurve, MapPanel
 from centrode.sheets.pictures import Picture
 from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel, Plot
 from centrode.sheets.sheet import (
-    Chapter,
     Column,
     Deferred,
     Fact,
-    FactTable,
-    Illustration,
+    Formula,
     Scalar,
     Section,
     Sheet,
@@ -43,10 +41,7 @@ NUMBERS = {
     "stroke": Sentence("stroke"),
     "swing": Sentence("swing"),
     "limit_angle": Sentence("angle of the crank between the limit positions"),
-    "pressure_angle": Sentence("greatest pressure angle"),
-    "dwell_range": Sentence("angle of the crank during the dwell"),
 }
-PLACES_OF_ERRORS = ("path", "motion")
 
 
 def sheet(results: SynthesisResults) -> Sheet:
@@ -54,19 +49,13 @@ def sheet(results: SynthesisResults) -> Sheet:
     facts = tuple(_facts(results))
     table = _table(results)
     pictures = dict(_pictures(results))
-    blocks = (
-        FactTable(facts),
-        table,
-        *(Illustration(name) for name in pictures),
-    )
     return Sheet(
         facts=facts,
         scalars=_scalars(results),
         tables=Deferred({"answers": lambda: table, **_curve_tables(results)}),
         pictures=Deferred({name: lambda picture=picture: picture for name, picture in pictures.items()}),  # type: ignore[misc]
-        printed=(table,),
+        printed=(table, *_construction(results)),
         files=dict(_files(results)),
-        chapters={"synthesis": Chapter(Sentence("Synthesis"), (Section(NOTHING, blocks),))},
         notes=tuple(_notes(results)),
     )
 
@@ -136,9 +125,7 @@ def _table(results: SynthesisResults) -> Table:
         ]
     transmission = np.array([one.transmission for one in answers])
     if np.isfinite(transmission).any():
-        columns.append(
-            Column("transmission", transmission, "rad", head=Sentence("least transmission angle"))
-        )
+        columns.append(Column("transmission", transmission, "rad", head=Sentence("least transmission angle")))
     width, height = np.array([one.size for one in answers]).T
     columns += [
         Column("width", width, "m", head=Sentence("width")),
@@ -150,6 +137,27 @@ def _table(results: SynthesisResults) -> Table:
         if np.isfinite(values).any():
             columns.append(Column(f"length_{link}", values, "m", head=Name(link)))
     return Table(tuple(columns), Sentence("Answers"))
+
+
+def _construction(results: SynthesisResults) -> Iterator[Section]:
+    """The equations of the triangle that O makes with both limit positions."""
+    wanted = results.task.synthesis
+    if wanted.kind != "strokes" or wanted.time_ratio is None:
+        return
+    lines = [("theta", "pi frac(K - 1, K + 1)")]
+    if wanted.topology == "shaper":
+        lines += [("a", "d sin frac(theta, 2)"), ("l", "frac(H, 2 sin frac(theta, 2))")]
+    elif wanted.topology == "whitworth-quick-return":
+        lines += [("d", "a sin frac(theta, 2)"), ("l", "frac(H, 2)")]
+    else:
+        if wanted.topology != "slider-crank-offset":
+            lines.append(("s", "2 c sin frac(psi, 2)"))
+        stroke = "H" if wanted.topology == "slider-crank-offset" else "s"
+        lines += [
+            ("b + a", f"{stroke} frac(sin(beta + theta), sin theta)"),
+            ("b - a", f"{stroke} frac(sin beta, sin theta)"),
+        ]
+    yield Section(Sentence("Construction"), (Formula(tuple(lines)),))
 
 
 def _length(answer: Answer, name: str) -> float:
@@ -301,6 +309,4 @@ def _errors(results: SynthesisResults, title: Title) -> Plot:
     count = np.arange(len(values), dtype=np.intp)
     label = AxisLabel(Sentence("angle of the crank from its start"), unit="rad")
     panel = CurvePanel(AxisLabel(Sentence("error of the rocker's angle"), unit="rad"), tuple(curves))
-    return Plot(
-        Sentence("Errors of the function"), title, Abscissa(label, values[:, 0], count), ((panel,),)
-    )
+    return Plot(Sentence("Errors of the function"), title, Abscissa(label, values[:, 0], count), ((panel,),))
