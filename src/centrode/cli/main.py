@@ -34,6 +34,7 @@ from centrode.cli.report import report
 from centrode.cli.schema import schema
 from centrode.cli.sheets import sheets
 from centrode.cli.sweep import sweep
+from centrode.cli.synthesise import synthesise
 from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translate_command, wished_language, with_language
 from centrode.cli.variants import variants
@@ -55,6 +56,7 @@ OWN: tuple[click.Command, ...] = (
     variants,
     cam,
     gears,
+    synthesise,
     sweep,
     draw,
     sheets,

@@ -13,6 +13,7 @@ from centrode.sheets.charts import (
     LinkageWithDiscs,
     NamedBarChart,
 )
+from centrode.sheets.curve_maps import CurveMap
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -48,4 +49,5 @@ Picture: TypeAlias = (
     | WheelPositions
     | FrontDiagram
     | ChainAtlas
+    | CurveMap
 )

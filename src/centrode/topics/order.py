@@ -32,6 +32,7 @@ COMMANDS = (
     "tolerances",
     "cam",
     "gears",
+    "synthesise",
     "centres",
     "centrodes",
     "diagrams",

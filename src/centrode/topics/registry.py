@@ -1152,6 +1152,14 @@ ALLOCATION = Topic(
     view=Lazily("centrode.views.allocation", "sheet"),
 )
 
+SYNTHESIS = Topic(
+    name="synthesis",
+    compute=Lazily("centrode.synthesis.synthesise", "synthesise"),
+    result=Lazily("centrode.synthesis.answers", "SynthesisResults"),
+    view=Lazily("centrode.views.synthesis", "sheet"),
+    subject="synthesis",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1168,6 +1176,7 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_MOTION,
     MOTION_LAWS,
     GEAR_PAIR,
+    SYNTHESIS,
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,

@@ -21,6 +21,7 @@ from centrode.render.figures.charts import (
     linkage_figure,
     named_bar_figure,
 )
+from centrode.render.figures.curve_maps import map_figure
 from centrode.render.figures.files import save_figures
 from centrode.render.figures.linkages import mechanism_figure, paths_figure
 from centrode.render.figures.outlines import outline_figure, path_figure
@@ -45,6 +46,7 @@ from centrode.sheets.charts import (
     LinkageWithDiscs,
     NamedBarChart,
 )
+from centrode.sheets.curve_maps import CurveMap
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.linkages import MechanismPicture, PathsPicture, SchemePair, SchemePicture
 from centrode.sheets.outlines import OutlineDrawing, PathDrawing, WheelPositions
@@ -149,5 +151,7 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return front_figure(picture, display)
             case ChainAtlas():
                 return atlas_figure(picture, display)
+            case CurveMap():
+                return map_figure(picture, display)
             case _:
                 assert_never(picture)

@@ -1,0 +1,89 @@
+"""Synthesis: from what one wants to mechanisms that do it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from centrode.errors import InputError, NotComputedYet
+from centrode.locale import _
+from centrode.synthesis.answers import SynthesisResults
+from centrode.synthesis.function_synthesis import function_answers
+from centrode.synthesis.path_synthesis import path_answers
+from centrode.synthesis.pose_synthesis import pose_answers
+from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SynthesisTask, read_synthesis, synthesis_from
+from centrode.synthesis.stroke_synthesis import stroke_answers
+
+SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
+
+
+def task_of(source: SynthesisSource) -> SynthesisTask:
+    """The request itself, of a file, or of tables as a file's; InputError for anything else."""
+    if isinstance(source, SynthesisTask):
+        return source
+    if isinstance(source, str | Path):
+        return read_synthesis(source)
+    if isinstance(source, Mapping):
+        return synthesis_from(source)
+    what = _("this function takes a request of a synthesis, its file or its tables")
+    raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
+
+
+def is_exact(task: SynthesisTask) -> bool:
+    """Whether poses are few enough to be met exactly, by dimensions that are all free."""
+    wanted = task.synthesis
+    return (
+        len(wanted.targets) <= MOST_POSES  # type: ignore[arg-type]
+        and wanted.timing == "free"
+        and wanted.place == "free"
+        and not wanted.free
+    )
+
+
+def synthesise(
+    source: SynthesisSource,
+    progress: Callable[[float], None] = lambda share: None,
+    stop: Callable[[], bool] = lambda: False,
+) -> SynthesisResults:
+    """Mechanisms that do what is wanted, the best first.
+
+    Parameters
+    ----------
+    source : path of a TOML file with a table [synthesis], its tables, or what `read_synthesis` made of them
+    progress : called with the share that is done
+    stop : once it is true the search ends with what there is
+
+    Returns
+    -------
+    SynthesisResults
+        `answers` have a description each, with their error, least transmission angle, size and defects. The same
+        request gives the same answers.
+
+    Raises
+    ------
+    InputError
+        What is wanted contradicts itself, or the file is wrong.
+    MotionError
+        Nothing was found.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> wanted = {"topology": "crank-rocker", "kind": "function", "formula": "log(x)/log(10)", "x": [1, 2],
+    ...           "swings": ["60 deg", "90 deg"]}
+    >>> found = ct.synthesise({"synthesis": wanted})
+    >>> bool(found.answers[0].greatest < 1e-3)
+    True
+    """
+    task = task_of(source)
+    wanted = task.synthesis
+    if wanted.kind == "motion" and wanted.topology in FOUR_BARS and is_exact(task):
+        return pose_answers(task, progress, stop)
+    if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:
+        return path_answers(task, progress, stop)
+    if wanted.kind == "strokes":
+        return stroke_answers(task)
+    if wanted.kind == "function" and wanted.topology in FOUR_BARS:
+        return function_answers(task, progress, stop)
+    raise NotComputedYet("[synthesis]", _("this kind is not synthesised for this topology"))

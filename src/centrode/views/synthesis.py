@@ -1,0 +1,312 @@
+"""Answers of a synthesis: what the terminal, the files, the figures and the document show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.model.files import mechanism_text
+from centrode.sheets.curve_maps import CurveMap, MapCurve, MapPanel
+from centrode.sheets.pictures import Picture
+from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel, Plot
+from centrode.sheets.sheet import (
+    Column,
+    Deferred,
+    Fact,
+    Formula,
+    Scalar,
+    Section,
+    Sheet,
+    Table,
+)
+from centrode.sheets.texts import NOTHING, Counted, Name, Number, Sentence, Symbol, Text, Title
+
+if TYPE_CHECKING:
+    from centrode.synthesis.answers import Answer, SynthesisResults
+
+Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+
+KINDS = {
+    "path": Sentence("a path of a point"),
+    "function": Sentence("a function of the crank"),
+    "motion": Sentence("poses of a link"),
+    "strokes": Sentence("strokes"),
+}
+NUMBERS = {
+    "turn_error": Sentence("greatest error of the turn"),
+    "time_ratio": Sentence("time ratio"),
+    "stroke": Sentence("stroke"),
+    "swing": Sentence("swing"),
+    "limit_angle": Sentence("angle of the crank between the limit positions"),
+}
+
+
+def sheet(results: SynthesisResults) -> Sheet:
+    """What was wanted, the answers as a table and as pictures, and a chapter."""
+    facts = tuple(_facts(results))
+    table = _table(results)
+    pictures = dict(_pictures(results))
+    return Sheet(
+        facts=facts,
+        scalars=_scalars(results),
+        tables=Deferred({"answers": lambda: table, **_curve_tables(results)}),
+        pictures=Deferred({name: lambda picture=picture: picture for name, picture in pictures.items()}),  # type: ignore[misc]
+        printed=(table, *_construction(results)),
+        files=dict(_files(results)),
+        notes=tuple(_notes(results)),
+    )
+
+
+def _error_unit(results: SynthesisResults) -> str:
+    return "rad" if results.task.synthesis.kind == "function" else "m"
+
+
+def _facts(results: SynthesisResults) -> Iterator[Fact]:
+    wanted, best = results.task.synthesis, results.answers[0]
+    yield Fact(Sentence("wanted"), KINDS[wanted.kind])
+    if len(results.targets):
+        yield Fact(Sentence("targets"), Number(len(results.targets), digits="d"))
+    if wanted.kind == "path":
+        yield Fact(Sentence("path"), Sentence("closed") if results.closed else Sentence("open"))
+    if results.examined:
+        yield Fact(Sentence("linkages examined"), Number(results.examined, digits="d"))
+    yield Fact(Sentence("answers"), Number(len(results.answers), digits="d"))
+    unit = _error_unit(results)
+    if wanted.kind != "strokes":
+        yield Fact(Sentence("root mean square error of the best"), Number(best.error, unit, digits=".4g"))
+        yield Fact(Sentence("greatest error of the best"), Number(best.greatest, unit, digits=".4g"))
+    if wanted.kind == "path":
+        yield Fact(
+            Sentence("sum of squared errors of the best"), Number(best.sum_of_squares, "m^2", digits=".6g")
+        )
+    if math.isfinite(best.transmission):
+        yield Fact(Sentence("least transmission angle of the best"), Number(best.transmission, "rad"))
+    for name, (value, its_unit) in best.numbers.items():
+        yield Fact(NUMBERS[name], Number(value, its_unit))
+    yield Fact(Sentence("defects of the best"), _defects(best))
+
+
+def _defects(answer: Answer) -> Text:
+    if answer.defects.none:
+        return Sentence("none")
+    if answer.defects.order:
+        return Sentence("order")
+    return Sentence("branch") if answer.defects.branch else Sentence("the crank does not turn fully")
+
+
+def _scalars(results: SynthesisResults) -> dict[str, Scalar]:
+    best, unit = results.answers[0], _error_unit(results)
+    found = {
+        "answers": Scalar(float(len(results.answers)), "1"),
+        "error": Scalar(best.error, unit),
+        "greatest_error": Scalar(best.greatest, unit),
+        "transmission": Scalar(best.transmission, "rad"),
+    }
+    return {name: scalar for name, scalar in found.items() if math.isfinite(scalar.value)}
+
+
+def _table(results: SynthesisResults) -> Table:
+    """One row an answer."""
+    answers, unit = results.answers, _error_unit(results)
+    count = np.arange(1, len(answers) + 1)
+    columns = [Column("answer", count.astype(float), head=Sentence("answer"), whole=True)]
+    if results.task.synthesis.kind != "strokes":
+        columns += [
+            Column("error", np.array([one.error for one in answers]), unit, head=Sentence("r.m.s. error")),
+            Column(
+                "greatest_error",
+                np.array([one.greatest for one in answers]),
+                unit,
+                head=Sentence("greatest error"),
+            ),
+        ]
+    transmission = np.array([one.transmission for one in answers])
+    if np.isfinite(transmission).any():
+        columns.append(Column("transmission", transmission, "rad", head=Sentence("least transmission angle")))
+    width, height = np.array([one.size for one in answers]).T
+    columns += [
+        Column("width", width, "m", head=Sentence("width")),
+        Column("height", height, "m", head=Sentence("height")),
+        Column("defects", tuple(_defects(one) for one in answers), head=Sentence("defects")),
+    ]
+    for link in answers[0].mechanism.links:
+        values = np.array([_length(one, link) for one in answers])
+        if np.isfinite(values).any():
+            columns.append(Column(f"length_{link}", values, "m", head=Name(link)))
+    return Table(tuple(columns), Sentence("Answers"))
+
+
+def _construction(results: SynthesisResults) -> Iterator[Section]:
+    """The equations of the triangle that O makes with both limit positions."""
+    wanted = results.task.synthesis
+    if wanted.kind != "strokes" or wanted.time_ratio is None:
+        return
+    lines = [("theta", "pi frac(K - 1, K + 1)")]
+    if wanted.topology == "shaper":
+        lines += [("a", "d sin frac(theta, 2)"), ("l", "frac(H, 2 sin frac(theta, 2))")]
+    elif wanted.topology == "whitworth-quick-return":
+        lines += [("d", "a sin frac(theta, 2)"), ("l", "frac(H, 2)")]
+    else:
+        if wanted.topology != "slider-crank-offset":
+            lines.append(("s", "2 c sin frac(psi, 2)"))
+        stroke = "H" if wanted.topology == "slider-crank-offset" else "s"
+        lines += [
+            ("b + a", f"{stroke} frac(sin(beta + theta), sin theta)"),
+            ("b - a", f"{stroke} frac(sin beta, sin theta)"),
+        ]
+    yield Section(Sentence("Construction"), (Formula(tuple(lines)),))
+
+
+def _length(answer: Answer, name: str) -> float:
+    """Length of a link, of one with more points the distance of its first two; NaN of a missing one."""
+    link = answer.mechanism.links.get(name)
+    if link is None:
+        return math.nan
+    places = list(link.coordinates.values())
+    return math.dist(places[0], places[1]) if len(places) > 1 else math.nan
+
+
+def _curve_tables(results: SynthesisResults) -> dict[str, object]:
+    """The curve of each answer, and the curves of poses."""
+    tables: dict[str, object] = {}
+    for number, answer in enumerate(results.answers, 1):
+        if len(answer.curve):
+            tables[f"curve-{number}"] = lambda places=answer.curve: _places_table(places)
+    for name, places in results.curves.items():
+        tables[name.replace("_", "-")] = lambda places=places: _places_table(places)
+    return tables
+
+
+def _places_table(places: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]) -> Table:
+    return Table((Column("x", places.real.copy(), "m"), Column("y", places.imag.copy(), "m")))
+
+
+def _files(results: SynthesisResults) -> Iterator[tuple[str, str]]:
+    """Every answer and its cognates as descriptions."""
+    for number, answer in enumerate(results.answers, 1):
+        yield f"answer-{number}.toml", mechanism_text(answer.mechanism)
+        for place, cognate in enumerate(answer.cognates, 1):
+            yield f"answer-{number}-cognate-{place}.toml", mechanism_text(cognate)
+
+
+def _notes(results: SynthesisResults) -> Iterator[Text]:
+    if not results.complete:
+        yield Sentence("the search was stopped: there may be better answers")
+    others = sum(len(answer.cognates) for answer in results.answers)
+    if others:
+        yield Counted(
+            "{n} cognate with a crank draws the same curve as an answer",
+            "{n} cognates with a crank draw the same curves as answers",
+            others,
+        )
+
+
+# Pictures
+
+
+def _pictures(results: SynthesisResults) -> Iterator[tuple[str, Picture]]:
+    title = Title(results.task.title)
+    if any(len(answer.curve) for answer in results.answers):
+        yield "answers", _map(results, title)
+    if results.curves:
+        yield "curves", _pose_curves(results, title)
+    if results.values is not None:
+        yield "errors", _errors(results, title)
+
+
+def _planar(places: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]) -> Array:
+    return np.column_stack([places.real, places.imag])
+
+
+def _labels() -> tuple[AxisLabel, AxisLabel]:
+    return AxisLabel(symbol=Symbol("x"), unit="m"), AxisLabel(symbol=Symbol("y"), unit="m")
+
+
+def _map(results: SynthesisResults, title: Title) -> CurveMap:
+    panels = []
+    for number, answer in enumerate(results.answers, 1):
+        if not len(answer.curve):
+            continue
+        curve = MapCurve(Sentence("path of the point"), _planar(answer.curve), 0)
+        panels.append(
+            MapPanel(
+                Sentence("answer {number}", number=Number(number, digits="d")),
+                (curve,),
+                _planar(results.targets),
+                tuple(_skeleton(answer)),
+                np.array([place[:2] for place in answer.mechanism.frame.points.values()], dtype=float),
+                _arrows(results),
+            )
+        )
+    return CurveMap(
+        Sentence("Answers with their curves"), title, *_labels(), Sentence("targets"), tuple(panels)
+    )
+
+
+def _skeleton(answer: Answer) -> Iterator[Array]:
+    """Links of a four-bar linkage where the point is at the first target, by the angle of the crank."""
+    mechanism = answer.mechanism
+    links = mechanism.links
+    if set(links) != {"OA", "AB", "DB"} or not len(answer.drive):
+        return
+    fixed, other = (complex(*mechanism.frame.points[name][:2]) for name in ("O", "D"))
+    crank = _length(answer, "OA")
+    joint = fixed + crank * np.exp(1j * answer.drive[0])
+    local = {name: complex(*place[:2]) for name, place in links["AB"].coordinates.items()}
+    point = next((name for name in local if name not in ("A", "B", "Q")), None)
+    if point is None or not abs(local[point]) > 0:
+        return
+    direction = (answer.met[0] - joint) / local[point] if len(answer.met) else 1.0
+    end = joint + direction * local["B"]
+    yield _planar(np.array([fixed, joint]))
+    yield _planar(np.array([joint, end, answer.met[0]]))
+    yield _planar(np.array([other, end]))
+
+
+def _arrows(results: SynthesisResults) -> Array | None:
+    """Directions of the poses as arrows."""
+    if results.task.synthesis.kind != "motion":
+        return None
+    rows = np.array(results.task.synthesis.targets, dtype=float)
+    spread = float(np.abs(results.targets - results.targets.mean()).max()) or 1.0
+    ends = results.targets + 0.3 * spread * np.exp(1j * rows[: len(results.targets), 2])
+    return np.stack([_planar(results.targets), _planar(ends)], axis=1)
+
+
+def _pose_curves(results: SynthesisResults, title: Title) -> CurveMap:
+    """Centre point and circle point curves around the poses."""
+    names = {
+        "centres": Sentence("centre point curve"),
+        "circle_points": Sentence("circle point curve, in the first pose"),
+    }
+    middle = complex(results.targets.mean())
+    reach = 4.0 * float(np.abs(results.targets - middle).max())
+    curves = []
+    for place, (name, places) in enumerate(results.curves.items()):
+        near = np.abs(places - middle) < reach
+        # neighbours far apart are not joined
+        jump = np.append(np.abs(np.diff(places)) > 0.25 * reach, False)
+        shown = np.where(near & ~jump, places, complex(np.nan, np.nan))
+        curves.append(MapCurve(names[name], _planar(shown), place))
+    panel = MapPanel(NOTHING, tuple(curves), _planar(results.targets), arrows=_arrows(results))
+    return CurveMap(
+        Sentence("Centre points and circle points"), title, *_labels(), Sentence("poses"), (panel,)
+    )
+
+
+def _errors(results: SynthesisResults, title: Title) -> Plot:
+    """Errors of the answers over the angle of the crank."""
+    values = results.values
+    assert values is not None
+    curves = []
+    for number, answer in enumerate(results.answers):
+        if answer.deviations is not None:
+            name = Sentence("answer {number}", number=Number(number + 1, digits="d"))
+            curves.append(Curve(name, answer.deviations, number))
+    count = np.arange(len(values), dtype=np.intp)
+    label = AxisLabel(Sentence("angle of the crank from its start"), unit="rad")
+    panel = CurvePanel(AxisLabel(Sentence("error of the rocker's angle"), unit="rad"), tuple(curves))
+    return Plot(Sentence("Errors of the function"), title, Abscissa(label, values[:, 0], count), ((panel,),))
