@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 import centrode as ct
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import mechanism_argument, start_option, stop_option
+from centrode.errors import InputError
 from centrode.locale import _, mark
+
+LANGUAGES = ("c", "python", "matlab", "javascript")
+"""Kinds that are source files."""
+KINDS = ("mjcf", *LANGUAGES)
 
 
 @click.command(help=mark("Write a mechanism for another program."))
@@ -18,10 +24,30 @@ from centrode.locale import _, mark
 @click.option(
     "--format",
     "kind",
-    type=click.Choice(["mjcf"]),
+    type=click.Choice(KINDS),
     default="mjcf",
-    help=mark("mjcf (default): a model for MuJoCo, its loops closed by constraints."),
+    help=mark(
+        "mjcf (default): a model for MuJoCo, its loops closed by constraints. c, python, matlab, javascript: a source "
+        "file that computes the motion from the drive and from dimensions."
+    ),
 )
+@click.option("--c", "kind", flag_value="c", help=mark("The same as --format c."))
+@click.option("--python", "kind", flag_value="python", help=mark("The same as --format python."))
+@click.option(
+    "--matlab", "kind", flag_value="matlab", help=mark("The same as --format matlab; for Octave too.")
+)
+@click.option("--javascript", "kind", flag_value="javascript", help=mark("The same as --format javascript."))
+@click.option(
+    "--vary",
+    multiple=True,
+    metavar=mark("PATH"),
+    help=mark(
+        'A dimension that a source file takes ("links.AB.length"); may be repeated. By default all lengths and the '
+        "places of joints."
+    ),
+)
+@start_option
+@stop_option
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -29,13 +55,48 @@ from centrode.locale import _, mark
     help=mark("Write FILE instead of printing."),
 )
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
-def export(mechanism: str, kind: str, out: Path | None, force: bool) -> None:
-    """Print or write the mechanism in its initial position as another program reads it."""
+def export(
+    mechanism: str,
+    kind: str,
+    vary: tuple[str, ...],
+    start: str | None,
+    stop: str | None,
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Print or write the mechanism as another program reads it."""
+    options = {"vary": list(vary) or None, "start": start, "stop": stop}
     description = library.load(mechanism)
-    with about(mechanism):
-        text = library.mjcf_text(description, ct.motion(description, at=[library.initial_place(description)]))
+    if kind in LANGUAGES:
+        with about(mechanism):
+            text = _source_file(description, kind, mechanism, out, options)
+    else:
+        _refuse_options(kind, options)
+        with about(mechanism):
+            text = library.mjcf_text(
+                description, ct.motion(description, at=[library.initial_place(description)])
+            )
     if out is None:
         click.echo(text, nl=False)
         return
     output.write_file(out, text, force=force)
     click.echo(_("wrote {file}").format(file=out))
+
+
+def _source_file(
+    description: ct.Mechanism, kind: str, source: str, out: Path | None, options: dict[str, Any]
+) -> str:
+    """The source file of a language, called as the file that it goes to."""
+    name = library.program_name(source if out is None else out.name)
+    if out is not None and kind == "matlab" and name != out.stem:
+        what = _("MATLAB finds functions by the names of their files, and {stem} is no name of a function")
+        raise InputError("--out", what.format(stem=out.stem), _("call it {name}").format(name=f"{name}.m"))
+    text: str = library.motion_code(description, kind, name=name, **options)
+    return text
+
+
+def _refuse_options(kind: str, options: dict[str, Any]) -> None:
+    for option, word in (("vary", "--vary"), ("start", "--from"), ("stop", "--to")):
+        if options[option] is not None:
+            what = _("{option} belongs to source files, and {kind} is none").format(option=word, kind=kind)
+            raise InputError(word, what, _("remove it"))
