@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -37,11 +38,22 @@ def test_source_files_are_printed_or_written(centrode: Centrode, tmp_path: Path)
         assert file.read_text(encoding="utf-8") == text
 
 
+def test_models_of_robots_have_a_file_of_loops_beside_them(centrode: Centrode, tmp_path: Path) -> None:
+    for kind, tag in (("urdf", "robot"), ("sdf", "sdf")):
+        file = tmp_path / f"model.{kind}"
+        done = centrode("export", "crank-rocker", "--format", kind, "--out", file)
+        assert done.code == 0 and "model.loops.json" in done.out
+        assert ET.fromstring(file.read_text(encoding="utf-8")).tag == tag
+        assert len(json.loads((tmp_path / "model.loops.json").read_text(encoding="utf-8"))["closures"]) == 1
+        (tmp_path / "model.loops.json").unlink()
+
+
 def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
     for words, told in (
         (("export", "crank-rocker", "--format", "step"), "'step' is not one of"),
         (("export", "crank-rocker", "--vary", "links.AB.length"), "--vary belongs to source files"),
         (("export", "crank-rocker", "--to", "90 deg"), "--to belongs to source files"),
+        (("export", "hookes-joint", "--format", "urdf"), "planar linkages"),
         (("export", "third-class-triad", "--python"), "platform"),
         (("export", "crank-rocker", "--c", "--vary", "links.XY.length"), "XY"),
         (("export", "crank-rocker", "--matlab", "--out", "my crank.m"), "my_crank.m"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ from centrode.locale import _, mark
 
 LANGUAGES = ("c", "python", "matlab", "javascript")
 """Kinds that are source files."""
-KINDS = ("mjcf", *LANGUAGES)
+ROBOTS = ("urdf", "sdf")
+"""Kinds that have a file of loops beside them."""
+KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
 
 
 @click.command(help=mark("Write a mechanism for another program."))
@@ -27,7 +30,8 @@ KINDS = ("mjcf", *LANGUAGES)
     type=click.Choice(KINDS),
     default="mjcf",
     help=mark(
-        "mjcf (default): a model for MuJoCo, its loops closed by constraints. c, python, matlab, javascript: a source "
+        "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and "
+        "Gazebo, with a file FILE.loops.json beside FILE. c, python, matlab, javascript: a source "
         "file that computes the motion from the drive and from dimensions."
     ),
 )
@@ -65,6 +69,7 @@ def export(
     force: bool,
 ) -> None:
     """Print or write the mechanism as another program reads it."""
+    beside: dict[Path, str] = {}
     options = {"vary": list(vary) or None, "start": start, "stop": stop}
     description = library.load(mechanism)
     if kind in LANGUAGES:
@@ -73,14 +78,24 @@ def export(
     else:
         _refuse_options(kind, options)
         with about(mechanism):
-            text = library.mjcf_text(
-                description, ct.motion(description, at=[library.initial_place(description)])
-            )
+            if kind in ROBOTS:
+                model = getattr(library, f"{kind}_model")(description)
+                text = model.text
+                if out is not None:
+                    beside[out.with_name(f"{out.stem}.loops.json")] = model.loops
+            else:
+                first = ct.motion(description, at=[library.initial_place(description)])
+                text = library.mjcf_text(description, first)
     if out is None:
         click.echo(text, nl=False)
         return
-    output.write_file(out, text, force=force)
-    click.echo(_("wrote {file}").format(file=out))
+    files = {out: text} | beside
+    with ExitStack() as drafts:
+        # all of them or none
+        for path, content in files.items():
+            draft = drafts.enter_context(output.output_file(path, force=force))
+            draft.write_text(content, encoding="utf-8", newline="\n")
+    click.echo(output.wrote(list(files)))
 
 
 def _source_file(
