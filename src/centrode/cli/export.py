@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,11 @@ KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
         "places of joints."
     ),
 )
+@click.option(
+    "--free",
+    is_flag=True,
+    help=mark("mjcf: without drives; masses, springs, dampers and constant loads move the model."),
+)
 @start_option
 @stop_option
 @click.option(
@@ -63,6 +69,7 @@ def export(
     mechanism: str,
     kind: str,
     vary: tuple[str, ...],
+    free: bool,
     start: str | None,
     stop: str | None,
     out: Path | None,
@@ -70,6 +77,8 @@ def export(
 ) -> None:
     """Print or write the mechanism as another program reads it."""
     beside: dict[Path, str] = {}
+    if free and kind != "mjcf":
+        raise InputError("--free", _("only a model for MuJoCo is left to its loads"), _("add --format mjcf"))
     options = {"vary": list(vary) or None, "start": start, "stop": stop}
     description = library.load(mechanism)
     if kind in LANGUAGES:
@@ -85,7 +94,8 @@ def export(
                     beside[out.with_name(f"{out.stem}.loops.json")] = model.loops
             else:
                 first = ct.motion(description, at=[library.initial_place(description)])
-                text = library.mjcf_text(description, first)
+                text = library.mjcf_text(description, first, free=free)
+                _tell_omitted(library.omitted_loads(description, first))
     if out is None:
         click.echo(text, nl=False)
         return
@@ -108,6 +118,12 @@ def _source_file(
         raise InputError("--out", what.format(stem=out.stem), _("call it {name}").format(name=f"{name}.m"))
     text: str = library.motion_code(description, kind, name=name, **options)
     return text
+
+
+def _tell_omitted(labels: Sequence[str]) -> None:
+    """A line that names the loads that a model does not hold."""
+    if labels:
+        output.tell(_("not in the model: {loads}").format(loads=", ".join(labels)))
 
 
 def _refuse_options(kind: str, options: dict[str, Any]) -> None:

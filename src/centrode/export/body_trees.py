@@ -241,7 +241,7 @@ class Pose:
     pace, step : how fast the drives run [rad/s], and the step of time [s] that this asks for
     """
 
-    def __init__(self, mechanism: Mechanism, motion: xarray.Dataset) -> None:
+    def __init__(self, mechanism: Mechanism, motion: xarray.Dataset, nominal: float = NOMINAL) -> None:
         self.mechanism = mechanism
         first = motion.isel(sample=0)
         self.places: dict[str, Place] = {
@@ -260,7 +260,7 @@ class Pose:
         self.step = min(LONGEST_STEP, 2 * math.pi / self.pace / STEPS)
 
         self.greatest = max((float(mass.mass) for mass in self.masses.values()), default=1.0) or 1.0
-        self.least = NOMINAL * self.greatest
+        self.least = nominal * self.greatest
 
     @property
     def nominal_inertia(self) -> float:

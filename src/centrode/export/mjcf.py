@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from centrode.errors import NotComputedYet
 from centrode.export.body_trees import NOMINAL, THIN, Pair, Place, Pose, less, number, numbers, outline
+from centrode.export.mjcf_loads import WORLD_SITE, ModelLoads, add_tendons, model_loads
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -80,7 +81,7 @@ def add_constraints(pose: Pose, root: ET.Element) -> None:
     if not pose.tree.closures and not gears:
         return
     if gears:
-        tendons = ET.SubElement(root, "tendon")
+        tendons = _tendons(root)
         for gear in gears:
             first, second = gear.links
             _fixed_tendon(tendons, f"gear {gear.id}", pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0,
@@ -101,28 +102,39 @@ def _closure(pose: Pose, equality: ET.Element, pair: Pair) -> None:
                   anchor=numbers((*less(pair.place, own), 0.0)))  # fmt: skip
 
 
-def add_drives(pose: Pose, root: ET.Element) -> None:
-    """An actuator for each drive, and the key frame that turns them on."""
-    actuators: list[tuple[str, dict[str, str]]] = []
-    tendons = root.find("tendon")
-    for drive in pose.mechanism.drives:
-        joints = pose.driven_joints(drive)
-        if len(joints) == 1 and next(iter(joints.values())) == 1.0:
-            actuators.append((f"drive {drive.id}", {"joint": next(iter(joints))}))
-            continue
-        if tendons is None:
-            tendons = ET.SubElement(root, "tendon")
-        _fixed_tendon(tendons, f"drive {drive.id}", joints)
-        actuators.append((f"drive {drive.id}", {"tendon": f"drive {drive.id}"}))
-    if not actuators:
-        return
-    parent = ET.SubElement(root, "actuator")
-    for (name, what), drive in zip(actuators, pose.mechanism.drives, strict=True):
-        _actuator(pose, root, parent, drive, {"name": name} | what)
-    controls = [drive.speed or 0.0 for drive in pose.mechanism.drives]
+def add_actuators(
+    pose: Pose, root: ET.Element, loads: ModelLoads, kept: Sequence[Drive], rates: list[float]
+) -> None:
+    """Actuators of the drives that are kept and of constant loads, and the key frame that turns them on."""
+    controls: dict[str, float] = {}
+    parent = ET.Element("actuator")
+    for drive in kept:
+        name = f"drive {drive.id}"
+        said = {"name": name} | _transmission(root, name, pose.driven_joints(drive))
+        _actuator(pose, root, parent, drive, said)
+        controls[name] = drive.speed or 0.0
+    for load in loads.actuators:
+        said = dict(load.attributes) or _transmission(root, load.name, load.joints)
+        ET.SubElement(parent, "motor", {"name": load.name, **said})
+        controls[load.name] = load.amount
+    if controls:
+        root.append(parent)
     frames = ET.SubElement(root, "keyframe")
-    rates = [pose.rate(name) for name in pose.order(FRAME)]
-    ET.SubElement(frames, "key", name="initial", ctrl=numbers(controls), qvel=numbers(rates))
+    key = {"ctrl": numbers(list(controls.values()))} if controls else {}
+    ET.SubElement(frames, "key", {"name": "initial", **key, "qvel": numbers(rates)})
+
+
+def _transmission(root: ET.Element, name: str, joints: Mapping[str, float]) -> dict[str, str]:
+    """What an actuator acts on: a joint, or a tendon whose length is a sum of coordinates."""
+    if len(joints) == 1 and next(iter(joints.values())) == 1.0:
+        return {"joint": next(iter(joints))}
+    _fixed_tendon(_tendons(root), name, joints)
+    return {"tendon": name}
+
+
+def _tendons(root: ET.Element) -> ET.Element:
+    found = root.find("tendon")
+    return ET.SubElement(root, "tendon") if found is None else found
 
 
 def _actuator(
@@ -152,11 +164,15 @@ def _fixed_tendon(tendons: ET.Element, name: str, joints: Mapping[str, float]) -
 
 # The model as XML: bodies below each other, constraints of the loops and gears, actuators of the drives.
 
+LIGHT = 1e-7
+"""Mass of a body that the description gives none, in models that are left to their loads; part of the greatest."""
+FREE_STEPS = 1000
+"""Steps of time in the duration of a simulation, at least."""
 HARD = "0.9999 0.9999 0.001"
 """How nearly rigid constraints are (MuJoCo's solimp)."""
 
 
-def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
+def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = False) -> str:
     """A linkage as a model of MuJoCo (MJCF), loops closed by equality constraints at the initial position.
 
     Parameters
@@ -165,12 +181,16 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
         In the plane, without wheels that roll.
     motion : Dataset
         Its motion, whose first sample is the initial position.
+    free : bool
+        Without drives: masses, springs, dampers and constant loads move the model, from rest or from the speed that the
+        description's simulation begins with.
 
     Returns
     -------
     str
         XML. Lengths in metres; every coordinate of a joint counts from the initial position. Links have the masses of
-        the description; loads, springs and friction are not in the model. A drive is an actuator of its joint with
+        the description. Springs and dampers are tendons, constant forces and moments actuators; `omitted_loads` names
+        those that are not in the model. A drive is an actuator of its joint with
         the key frame's `ctrl` as its speed (a law's value follows `ctrl`, from the initial one).
 
     Raises
@@ -185,20 +205,34 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
     if mechanism.rolling:
         what = _("models of MuJoCo have no wheels that roll")
         raise NotComputedYet(f"[[rolling]] {mechanism.rolling[0].id}", what, _("remove it"))
-    pose = Pose(mechanism, motion)
+    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL)
+    if free and mechanism.simulation is not None and mechanism.simulation.duration is not None:
+        pose.step = min(pose.step, mechanism.simulation.duration / FREE_STEPS)
     if min(pose.least, pose.nominal_inertia) < LIGHTEST:
         what = _("MuJoCo has no bodies with a mass or moment of inertia below {least} kg or kg·m²")
         raise NotComputedYet("links", what.format(least=LIGHTEST), _("export it enlarged, or in other units"))
-    return _document(pose)
+    return _document(pose, free, _starting_pace(mechanism) if free else 1.0)
 
 
-def _document(pose: Pose) -> str:
-    """The whole document."""
+def omitted_loads(mechanism: Mechanism, motion: xarray.Dataset) -> tuple[str, ...]:
+    """Labels of the loads that a model of MuJoCo does not hold: formulas, tables, diagrams, dry friction, weights."""
+    return model_loads(Pose(mechanism, motion)).omitted
+
+
+def _starting_pace(mechanism: Mechanism) -> float:
+    """How many times as fast as the drive's own speed a simulation begins; zero where it begins at rest."""
+    simulation, drive = mechanism.simulation, mechanism.drives[0]
+    speed = None if simulation is None else simulation.speed
+    return 0.0 if not speed or not drive.speed else speed / abs(drive.speed)
+
+
+def _document(pose: Pose, free: bool, pace: float) -> str:
+    """The whole document; `pace`: how many times as fast as the drives' own speeds all moves initially."""
     root = ET.Element("mujoco", model=pose.mechanism.title or "linkage")
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
     gravity = pose.mechanism.gravity or (0.0, 0.0)
     ET.SubElement(root, "option", gravity=numbers((*gravity, 0.0)), timestep=number(pose.step),
-                  integrator="implicitfast", tolerance="1e-12", iterations="200")  # fmt: skip
+                  integrator="RK4" if free else "implicitfast", tolerance="1e-12", iterations="200")  # fmt: skip
     solref = f"{number(3 * pose.step)} 1"
     defaults = ET.SubElement(root, "default")
     ET.SubElement(defaults, "equality", solref=solref, solimp=HARD)
@@ -210,6 +244,13 @@ def _document(pose: Pose) -> str:
     for body in pose.tree.children(FRAME):
         add_body(pose, world, body, (0.0, 0.0))
     add_constraints(pose, root)
-    add_drives(pose, root)
+    loads = model_loads(pose)
+    if loads.tendons:
+        add_tendons(loads, _tendons(root))
+    if any("refsite" in load.attributes for load in loads.actuators):
+        ET.SubElement(world, "site", name=WORLD_SITE)
+    kept = pose.mechanism.drives if not free else ()
+    order = pose.order(FRAME)
+    add_actuators(pose, root, loads, kept, [pace * pose.rate(name) for name in order])
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"

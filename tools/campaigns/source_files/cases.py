@@ -178,7 +178,7 @@ CAMPAIGN = Campaign(
     "Source files of mechanisms",
     "What printed source files compute, in C by gcc, in JavaScript by Node, in Python and in Octave, against motions "
     "of the program with the same numbers: in C all built-in linkages, in the others twenty, each with 20 sets of "
-    "lengths and places of fixed points that are drawn at random (4 in Python, 2 in Octave, which look at fewer places).",
+    "lengths and places of fixed points that are drawn at random (4 in Python, 2 in Octave, at fewer places).",
     COLUMNS,
     run,
     len(cases()),
