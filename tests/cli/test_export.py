@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,39 @@ def test_a_model_is_printed_or_written(centrode: Centrode, tmp_path: Path) -> No
     assert centrode("export", "crank-rocker", "--format", "mjcf", "--out", file, "--force").code == 0
 
 
+def test_source_files_are_printed_or_written(centrode: Centrode, tmp_path: Path) -> None:
+    printed = centrode("export", "crank-rocker", "--python", "--vary", "links.AB.length", "--to", "90 deg")
+    assert printed.code == 0 and printed.out.startswith("# Crank-rocker")
+    assert "DIMENSION_NAMES = ['links.AB.length']" in printed.out
+    compile(printed.out, "printed", "exec")
+    for kind, suffix in (("c", ".c"), ("javascript", ".js"), ("matlab", ".m")):
+        file = tmp_path / f"my_crank{suffix}"
+        assert centrode("export", "crank-rocker", f"--{kind}", "--out", file).code == 0
+        text = file.read_text(encoding="utf-8")
+        assert "my_crank" in text and "crank_rocker" not in text
+        assert centrode("export", "crank-rocker", "--format", kind, "--out", file, "--force").code == 0
+        assert file.read_text(encoding="utf-8") == text
+
+
+def test_models_of_robots_have_a_file_of_loops_beside_them(centrode: Centrode, tmp_path: Path) -> None:
+    for kind, tag in (("urdf", "robot"), ("sdf", "sdf")):
+        file = tmp_path / f"model.{kind}"
+        done = centrode("export", "crank-rocker", "--format", kind, "--out", file)
+        assert done.code == 0 and "model.loops.json" in done.out
+        assert ET.fromstring(file.read_text(encoding="utf-8")).tag == tag
+        assert len(json.loads((tmp_path / "model.loops.json").read_text(encoding="utf-8"))["closures"]) == 1
+        (tmp_path / "model.loops.json").unlink()
+
+
 def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
     for words, told in (
-        (("export", "crank-rocker", "--format", "urdf"), "'urdf' is not 'mjcf'"),
+        (("export", "crank-rocker", "--format", "step"), "'step' is not one of"),
+        (("export", "crank-rocker", "--vary", "links.AB.length"), "--vary belongs to source files"),
+        (("export", "crank-rocker", "--to", "90 deg"), "--to belongs to source files"),
+        (("export", "hookes-joint", "--format", "urdf"), "planar linkages"),
+        (("export", "third-class-triad", "--python"), "platform"),
+        (("export", "crank-rocker", "--c", "--vary", "links.XY.length"), "XY"),
+        (("export", "crank-rocker", "--matlab", "--out", "my crank.m"), "my_crank.m"),
         (("export", "hookes-joint"), "planar linkages"),
         (("export", "rack-and-pinion"), "no wheels that roll"),
         (("export", "cam-from-curvature"), "cam"),

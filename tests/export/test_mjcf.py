@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.export.mjcf import mjcf_text
+from centrode.export.mjcf import mjcf_text, omitted_loads
 from centrode.kinematics.motion import initial_place
 from centrode.model.examples import example_text
 from samples import examples_at_hand
@@ -200,3 +200,79 @@ def test_what_is_too_light_for_mujoco_is_refused() -> None:
         """)
     with pytest.raises(ct.NotComputedYet, match="1e-15"):
         mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
+
+
+SWUNG = """
+    title = "Crank on springs"
+    gravity = [0, -9.81]
+    frame.points = { O = [0, 0], D = [4, 0], F = [1, 3] }
+    links.OA = { length = 1, mass = 2, shape = "rod" }
+    links.AB = { length = 3.5, mass = 3, shape = "rod" }
+    links.DB = { length = 3, mass = 3, shape = "rod" }
+    drives = [{ link = "OA", start = 1, speed = 1 }]
+    assembly.sides = { B = "left" }
+    [[loads]]
+    kind = "spring"
+    points = ["A", "F"]
+    stiffness = "60 N/m"
+    free_length = 1.5
+    [[loads]]
+    kind = "damper"
+    points = ["B", "F"]
+    damping = "4 N s/m"
+    [[loads]]
+    kind = "spring"
+    link = "AB"
+    relative_to = "DB"
+    stiffness = "12 N m/rad"
+    free_angle = -2.0
+    [[loads]]
+    kind = "damper"
+    link = "DB"
+    damping = "1.5 N m s/rad"
+    [[loads]]
+    kind = "torque"
+    link = "OA"
+    relative_to = "AB"
+    value = 8
+    [[loads]]
+    kind = "force"
+    point = "B"
+    vector = [5, 12]
+    [simulation]
+    duration = 1
+    equations = "multibody"
+    samples = 11
+    """
+
+
+@pytest.mark.parametrize("name", ["double-pendulum", "five-bar-pendulum", "andrews-mechanism", "on springs"])
+def test_free_motions_are_those_of_a_simulation(name: str) -> None:
+    mechanism = ct.parse_mechanism(SWUNG) if name == "on springs" else ct.example(name)
+    first = ct.motion(mechanism, at=[initial_place(mechanism)])
+    assert omitted_loads(mechanism, first) == ()
+    model = mujoco.MjModel.from_xml_string(mjcf_text(mechanism, first, free=True))
+    assert mechanism.simulation is not None and mechanism.simulation.duration is not None
+    span = min(1.0, mechanism.simulation.duration)
+    model.opt.timestep = span / round(span / min(model.opt.timestep, 2e-4))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_step(model, data, round(span / model.opt.timestep))
+    mujoco.mj_forward(model, data)
+    course = ct.simulate(mechanism)
+    end = int(np.argmin(np.abs(course.time.values - span)))
+    assert course.time.values[end] == pytest.approx(span, abs=1e-12)
+    sites = {model.site(k).name.partition(".")[2]: k for k in range(model.nsite)}
+    points = [point for point in course.point.values if point in sites]
+    ours = course.position.sel(point=points).values
+    size = float(np.ptp(ours, axis=(0, 1)).max())
+    assert np.abs(data.site_xpos[[sites[point] for point in points], :2] - ours[end]).max() <= 1e-4 * size
+    # it has moved
+    assert np.abs(ours[end] - ours[0]).max() > 0.05 * size
+
+
+def test_loads_that_are_not_in_the_model_are_named() -> None:
+    mechanism = ct.example("six-bar-press")
+    assert len(mechanism.loads) > 0
+    omitted = omitted_loads(mechanism, ct.motion(mechanism, at=[initial_place(mechanism)]))
+    assert len(omitted) == len(mechanism.loads)

@@ -16,6 +16,7 @@ from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
+from tools.campaigns.source_files import cases as source_files
 from tools.campaigns.spheres import cases as spheres
 
 CAMPAIGNS: Mapping[str, Campaign] = {
@@ -33,5 +34,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         clearances.CAMPAIGN,
         free_motions.CAMPAIGN,
         pages.CAMPAIGN,
+        source_files.CAMPAIGN,
     )
 }

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import click
 
 import centrode as ct
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import mechanism_argument, start_option, stop_option
+from centrode.errors import InputError
 from centrode.locale import _, mark
+
+LANGUAGES = ("c", "python", "matlab", "javascript")
+"""Kinds that are source files."""
+ROBOTS = ("urdf", "sdf")
+"""Kinds that have a file of loops beside them."""
+KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
 
 
 @click.command(help=mark("Write a mechanism for another program."))
@@ -18,10 +28,36 @@ from centrode.locale import _, mark
 @click.option(
     "--format",
     "kind",
-    type=click.Choice(["mjcf"]),
+    type=click.Choice(KINDS),
     default="mjcf",
-    help=mark("mjcf (default): a model for MuJoCo, its loops closed by constraints."),
+    help=mark(
+        "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and "
+        "Gazebo, with a file FILE.loops.json beside FILE. c, python, matlab, javascript: a source "
+        "file that computes the motion from the drive and from dimensions."
+    ),
 )
+@click.option("--c", "kind", flag_value="c", help=mark("The same as --format c."))
+@click.option("--python", "kind", flag_value="python", help=mark("The same as --format python."))
+@click.option(
+    "--matlab", "kind", flag_value="matlab", help=mark("The same as --format matlab; for Octave too.")
+)
+@click.option("--javascript", "kind", flag_value="javascript", help=mark("The same as --format javascript."))
+@click.option(
+    "--vary",
+    multiple=True,
+    metavar=mark("PATH"),
+    help=mark(
+        'A dimension that a source file takes ("links.AB.length"); may be repeated. By default all lengths and the '
+        "places of joints."
+    ),
+)
+@click.option(
+    "--free",
+    is_flag=True,
+    help=mark("mjcf: without drives; masses, springs, dampers and constant loads move the model."),
+)
+@start_option
+@stop_option
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -29,13 +65,69 @@ from centrode.locale import _, mark
     help=mark("Write FILE instead of printing."),
 )
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
-def export(mechanism: str, kind: str, out: Path | None, force: bool) -> None:
-    """Print or write the mechanism in its initial position as another program reads it."""
+def export(
+    mechanism: str,
+    kind: str,
+    vary: tuple[str, ...],
+    free: bool,
+    start: str | None,
+    stop: str | None,
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Print or write the mechanism as another program reads it."""
+    beside: dict[Path, str] = {}
+    if free and kind != "mjcf":
+        raise InputError("--free", _("only a model for MuJoCo is left to its loads"), _("add --format mjcf"))
+    options = {"vary": list(vary) or None, "start": start, "stop": stop}
     description = library.load(mechanism)
-    with about(mechanism):
-        text = library.mjcf_text(description, ct.motion(description, at=[library.initial_place(description)]))
+    if kind in LANGUAGES:
+        with about(mechanism):
+            text = _source_file(description, kind, mechanism, out, options)
+    else:
+        _refuse_options(kind, options)
+        with about(mechanism):
+            if kind in ROBOTS:
+                model = getattr(library, f"{kind}_model")(description)
+                text = model.text
+                if out is not None:
+                    beside[out.with_name(f"{out.stem}.loops.json")] = model.loops
+            else:
+                first = ct.motion(description, at=[library.initial_place(description)])
+                text = library.mjcf_text(description, first, free=free)
+                _tell_omitted(library.omitted_loads(description, first))
     if out is None:
         click.echo(text, nl=False)
         return
-    output.write_file(out, text, force=force)
-    click.echo(_("wrote {file}").format(file=out))
+    files = {out: text} | beside
+    with ExitStack() as drafts:
+        # all of them or none
+        for path, content in files.items():
+            draft = drafts.enter_context(output.output_file(path, force=force))
+            draft.write_text(content, encoding="utf-8", newline="\n")
+    click.echo(output.wrote(list(files)))
+
+
+def _source_file(
+    description: ct.Mechanism, kind: str, source: str, out: Path | None, options: dict[str, Any]
+) -> str:
+    """The source file of a language, called as the file that it goes to."""
+    name = library.program_name(source if out is None else out.name)
+    if out is not None and kind == "matlab" and name != out.stem:
+        what = _("MATLAB finds functions by the names of their files, and {stem} is no name of a function")
+        raise InputError("--out", what.format(stem=out.stem), _("call it {name}").format(name=f"{name}.m"))
+    text: str = library.motion_code(description, kind, name=name, **options)
+    return text
+
+
+def _tell_omitted(labels: Sequence[str]) -> None:
+    """A line that names the loads that a model does not hold."""
+    if labels:
+        output.tell(_("not in the model: {loads}").format(loads=", ".join(labels)))
+
+
+def _refuse_options(kind: str, options: dict[str, Any]) -> None:
+    for option, word in (("vary", "--vary"), ("start", "--from"), ("stop", "--to")):
+        if options[option] is not None:
+            what = _("{option} belongs to source files, and {kind} is none").format(option=word, kind=kind)
+            raise InputError(word, what, _("remove it"))

@@ -371,15 +371,19 @@ class Notation:
     selection: str = ""
 
     def text(self, node: Node, inside: Sequence[Text]) -> Text:
-        """An operation on arguments that are texts. Raises Unwritten for one that the language does not have."""
-        operation = OPERATIONS[node.operation]
-        strength, sign = operation.strength, self.signs.get(node.operation, operation.sign)
-        if node.operation == "where" and self.selection:
+        """A node on arguments that are texts. Raises Unwritten for an operation that the language does not have."""
+        return self.operation_text(node.operation, inside)
+
+    def operation_text(self, name: str, inside: Sequence[Text]) -> Text:
+        """An operation, by its name, on arguments that are texts. Raises Unwritten."""
+        operation = OPERATIONS[name]
+        strength, sign = operation.strength, self.signs.get(name, operation.sign)
+        if name == "where" and self.selection:
             return self.selection.format(*(text for text, _strength in inside)), ALONE
-        if not sign or node.operation in self.functions:
-            if node.operation not in self.functions:
-                raise Unwritten(node.operation)
-            return f"{self.functions[node.operation]}({', '.join(text for text, _strength in inside)})", ALONE
+        if not sign or name in self.functions:
+            if name not in self.functions:
+                raise Unwritten(name)
+            return f"{self.functions[name]}({', '.join(text for text, _strength in inside)})", ALONE
         if operation.arguments == 1:
             return sign + _in_brackets(inside[0], strength), strength
         # of equal strength only the left argument goes without brackets; + and * too, as they are not reassociated

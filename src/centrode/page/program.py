@@ -168,11 +168,11 @@ def _engine() -> str:
 
 def _parameters(mechanism: Mechanism, ready: Ready, vary: Vary | None) -> tuple[PageParameter, ...]:
     if vary is None:
-        return tuple(_own_range(mechanism, ready, path) for path in _lengths_and_places(mechanism))
+        return tuple(_own_range(mechanism, ready, path) for path in lengths_and_places(mechanism))
     return tuple(_given_range(mechanism, path, ends) for path, ends in vary.items())
 
 
-def _lengths_and_places(mechanism: Mechanism) -> list[str]:
+def lengths_and_places(mechanism: Mechanism) -> list[str]:
     """Paths of all lengths, and of the coordinates of all points that never move."""
     lengths = [f"links.{name}.length" for name, link in mechanism.links.items() if link.length is not None]
     axes = ("longitude", "latitude") if mechanism.space == "sphere" else ("x", "y")
@@ -212,10 +212,10 @@ def _parameter(mechanism: Mechanism, path: str, least: float, most: float) -> Pa
     unit = KINDS[kind].unit if kind in KINDS else "1"
     # a path that is no dimension is refused as such
     dimensions_of(mechanism, {path: np.array([own])}, ARRAYS)
-    return PageParameter(path, kind, unit, own, least, most, _is_positive(mechanism, path))
+    return PageParameter(path, kind, unit, own, least, most, is_positive(mechanism, path))
 
 
-def _is_positive(mechanism: Mechanism, path: str) -> bool:
+def is_positive(mechanism: Mechanism, path: str) -> bool:
     """Whether no description can have less than zero there."""
     try:
         dimensions_of(mechanism, {path: np.array([-1.0])}, ARRAYS)
@@ -238,7 +238,7 @@ def _functions(
     traced: PageTrace, acting: TracedReactions, free: FreeNumbers, varied: Varied, samples: int
 ) -> str:
     """All functions of a page as members of an object."""
-    of_mechanism = {name: k for k, name in enumerate(_variables(varied, free.paths))}
+    of_mechanism = {name: k for k, name in enumerate(mechanism_variables(varied, free.paths))}
     moving = [sign_of(group) for group in traced.at_samples]
     moving += [near_of(key) for key in traced.counted] + [turns_of(link) for link in traced.rotors]
     fixed = PLACE
@@ -259,7 +259,7 @@ def _functions(
     stride = max(samples, PLACES_AROUND)
     motion = [row.node for row in traced.rows] + [traced.residual, *traced.at_samples.values()]
     members = [
-        f"numbers: {once(_numbers(free, varied), {path: k for k, path in enumerate(free.paths)})}",
+        f"numbers: {once(mechanism_numbers(free, varied), {path: k for k, path in enumerate(free.paths)})}",
         function("motion", motion, stride=stride),
         of_guards("cells", list(traced.cells.values())),
         of_guards("curves", list(traced.curves.values())),
@@ -272,20 +272,20 @@ def _functions(
     return ",\n".join(members)
 
 
-def _variables(varied: Varied, paths: Sequence[str]) -> list[str]:
+def mechanism_variables(varied: Varied, paths: Sequence[str]) -> list[str]:
     """Variables of a mechanism in the order in which a page keeps them; masses are numbers at paths alone."""
     scale = [] if isinstance(varied.scale, float) else [SCALE]
     return list(dict.fromkeys([*varied.names, *scale, *paths]))
 
 
-def _numbers(free: FreeNumbers, varied: Varied) -> list[Node]:
+def mechanism_numbers(free: FreeNumbers, varied: Varied) -> list[Node]:
     """The variables of a mechanism from the numbers at the paths."""
     known = {path: variable(path) for path in free.paths}
     for name, (k, word) in free.turned.items():
         known[name] = as_node(getattr(EXPRESSIONS, word)(variable(free.paths[k])))
     if free.scale is not None:
         known[SCALE] = free.scale.substitute(known).outputs[SCALE]
-    return [known[name] for name in _variables(varied, free.paths)]
+    return [known[name] for name in mechanism_variables(varied, free.paths)]
 
 
 # What a page knows of a mechanism, as plain data.
@@ -309,7 +309,7 @@ def _data(
         "space": mechanism.space,
         "axes": list(layout.space.axes),
         "parameters": [parameter.data for parameter in parameters],
-        "variables": len(_variables(varied, [parameter.path for parameter in parameters])),
+        "variables": len(mechanism_variables(varied, [parameter.path for parameter in parameters])),
         "points": [*frame, *layout.points],
         "fixed": len(frame),
         "links": list(layout.links),

@@ -81,23 +81,30 @@ def turns_of(link: str) -> str:
     return f"turns {link}"
 
 
+def higher_group(ready: Ready) -> str:
+    """Name of the first group that has no closed form; empty where all have one."""
+    return next((name_of(group) for group in ready.structure.groups if isinstance(group, Newton)), "")
+
+
+def untraced_drive(ready: Ready) -> str:
+    """Name of the first of several drives whose law is not traced; empty where all are."""
+    path = ready.kinematics.path
+    laws = {driven.drive.id: driven.law for driven in path.driven} if path.by_time else {}
+    return next((drive for drive, law in laws.items() if isinstance(law, SegmentedLaw | ShaftLaw)), "")
+
+
 def refuse_higher_class(ready: Ready) -> None:
     """Raise NotComputedYet, with the group's name, where a group has no closed form."""
-    for group in ready.structure.groups:
-        if isinstance(group, Newton):
-            what = _("a page computes closed forms, and the {group} has none").format(group=name_of(group))
-            raise NotComputedYet("page", what, _("show it by: {command}").format(command="centrode report"))
+    if group := higher_group(ready):
+        what = _("a page computes closed forms, and the {group} has none").format(group=group)
+        raise NotComputedYet("page", what, _("show it by: {command}").format(command="centrode report"))
 
 
 def refuse_laws(ready: Ready) -> None:
     """Raise NotComputedYet, with the drive's name, for a law of several drives that is not traced."""
-    path = ready.kinematics.path
-    for driven in path.driven if path.by_time else ():
-        if isinstance(driven.law, SegmentedLaw | ShaftLaw):
-            what = _("a page with several drives knows no law of a cam, and drive {drive} has one")
-            raise NotComputedYet(
-                "page", what.format(drive=driven.drive.id), _("drive it by a formula or a table")
-            )
+    if drive := untraced_drive(ready):
+        what = _("a page with several drives knows no law of a cam, and drive {drive} has one")
+        raise NotComputedYet("page", what.format(drive=drive), _("drive it by a formula or a table"))
 
 
 @dataclass

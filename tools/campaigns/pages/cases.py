@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
@@ -11,6 +12,7 @@ import xarray as xr
 import centrode as ct
 from centrode.errors import NotComputedYet, Status
 from centrode.kinematics.events import Guards
+from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import grid_of, of_batch
@@ -102,9 +104,20 @@ def compare(outcome: Outcome, program: PageProgram, sets: list[list[float]]) -> 
 
 
 def conditions_of(program: PageProgram, paths: list[str], sets: list[list[float]]) -> np.ndarray:
+    """How much every sample of a page answers to rounding."""
+    span = grid_of(ready(program.mechanism), None, None, None, None)
+    return conditions_at(program.mechanism, span, program.data["guards"], paths, sets)
+
+
+def conditions_at(
+    mechanism: ct.Mechanism,
+    span: SampleGrid,
+    guards: Iterable[tuple[str, int]],
+    paths: list[str],
+    sets: list[list[float]],
+) -> np.ndarray:
     """How much every sample answers to rounding: products over the groups of greatest root over own root."""
-    mechanism, prepared = program.mechanism, ready(program.mechanism)
-    span = grid_of(prepared, None, None, None, None)
+    prepared = ready(mechanism)
     numbers = {path: np.array([one[k] for one in sets]) for k, path in enumerate(paths)}
     kinematics = prepared.kinematics
     if paths:
@@ -113,7 +126,7 @@ def conditions_of(program: PageProgram, paths: list[str], sets: list[list[float]
     continuation = MotionOnPath.along(prepared, kinematics, span.parameter, lanes).continuation
     each, at = np.repeat(np.arange(lanes), len(span.parameter)), np.tile(span.parameter, lanes)
     condition = np.ones((lanes, len(span.parameter)))
-    for kind, group in program.data["guards"]:
+    for kind, group in guards:
         with np.errstate(all="ignore"):
             value = np.abs(Guards(continuation).jets(group, each, at, 1).value).reshape(lanes, -1)
             share = np.nanmax(value, axis=1, keepdims=True, initial=0.0) / value

@@ -1,0 +1,146 @@
+"""Loads in a model of MuJoCo: springs and dampers as tendons, constant forces and moments as actuators."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, assert_never
+from xml.etree import ElementTree as ET
+
+from centrode.export.body_trees import Pose, number, numbers
+from centrode.model.loads import (
+    AnyLoad,
+    BearingFriction,
+    GuideForce,
+    GuideFriction,
+    HingeDamper,
+    HingeFriction,
+    HingeSpring,
+    LinkWeight,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    PointWeight,
+    SliderFriction,
+    Torque,
+    numbered_names,
+)
+from centrode.model.mechanism import FRAME, Mechanism
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+WORLD_SITE = "axes of the frame"
+"""The site in whose axes constant forces act."""
+
+
+@dataclass(frozen=True)
+class TendonLoad:
+    """A spring or a damper: along the line between two sites, or along a sum of coordinates of joints."""
+
+    name: str
+    sites: tuple[str, ...]
+    joints: Mapping[str, float]
+    properties: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class ActuatorLoad:
+    """A constant force or moment: an actuator whose control is the amount."""
+
+    name: str
+    attributes: Mapping[str, str]
+    joints: Mapping[str, float]
+    amount: float
+
+
+@dataclass(frozen=True)
+class ModelLoads:
+    """Loads of a model, and the labels of those that it does not hold."""
+
+    tendons: tuple[TendonLoad, ...]
+    actuators: tuple[ActuatorLoad, ...]
+    omitted: tuple[str, ...]
+
+
+def labelled_loads(mechanism: Mechanism) -> Iterator[tuple[str, AnyLoad]]:
+    """Loads with labels that are all different."""
+    labels = numbered_names([load.label for load in mechanism.loads])
+    return zip(labels, mechanism.loads, strict=True)
+
+
+def model_loads(pose: Pose) -> ModelLoads:
+    """The loads of a description as a model of MuJoCo holds them."""
+    found = {label: _model_load(pose, label, load) for label, load in labelled_loads(pose.mechanism)}
+    return ModelLoads(
+        tuple(x for x in found.values() if isinstance(x, TendonLoad)),
+        tuple(x for x in found.values() if isinstance(x, ActuatorLoad)),
+        tuple(label for label, x in found.items() if x is None),
+    )
+
+
+def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorLoad | None:
+    name = f"load {label}"
+    match load:
+        case PointSpring(points=points, stiffness=stiffness, free_length=free):
+            properties = {"stiffness": number(stiffness), "springlength": number(free or 0.0)}
+            return TendonLoad(name, _sites(pose, points), {}, properties)
+        case PointDamper(points=points, damping=damping):
+            return TendonLoad(name, _sites(pose, points), {}, {"damping": number(damping)})
+        case HingeSpring(link=link, relative_to=base, stiffness=stiffness, free_angle=free):
+            # the coordinates of joints count from the initial position
+            rest = (free or 0.0) - (pose.angles[link] - pose.angles[base])
+            properties = {"stiffness": number(stiffness), "springlength": _resting(rest)}
+            return TendonLoad(name, (), _turning(pose, link, base), properties)
+        case HingeDamper(link=link, relative_to=base, damping=damping):
+            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(damping)})
+        case HingeFriction(link=link, relative_to=base, value=None, viscous=float(viscous), quadratic=None):
+            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(viscous)})
+        case GuideFriction(guide=guide, value=None, viscous=float(viscous), quadratic=None):
+            return TendonLoad(name, (), {f"guide {guide}": 1.0}, {"damping": number(viscous)})
+        case Torque(link=link, relative_to=base, value=float(value), table=None):
+            return ActuatorLoad(name, {}, _turning(pose, link, base), value)
+        case GuideForce(guide=guide, value=float(value), table=None, pressure=None):
+            return ActuatorLoad(name, {}, {f"guide {guide}": 1.0}, value)
+        case PointForce(point=point, vector=(float(x), float(y)), axes="frame", while_moving=None):
+            gear = numbers((x, y, 0.0, 0.0, 0.0, 0.0))
+            (site,) = _sites(pose, (point,))
+            return ActuatorLoad(name, {"site": site, "refsite": WORLD_SITE, "gear": gear}, {}, 1.0)
+        case (
+            HingeFriction() | GuideFriction() | BearingFriction() | SliderFriction()
+            | Torque() | GuideForce() | PointForce() | LinkWeight() | PointWeight()
+        ):  # fmt: skip
+            return None
+        case _:
+            assert_never(load)
+
+
+def _sites(pose: Pose, points: Sequence[str]) -> tuple[str, ...]:
+    """Sites of points, each on a body that has it."""
+    found = []
+    for point in points:
+        owners = [name for name, link in pose.mechanism.links.items() if point in link.coordinates]
+        fixed = point in pose.mechanism.frame.points
+        found.append(f"{FRAME if fixed else owners[0]}.{point}")
+    return tuple(found)
+
+
+def _turning(pose: Pose, link: str, base: str) -> dict[str, float]:
+    return pose.turns({link: 1.0, base: -1.0})
+
+
+def _resting(length: float) -> str:
+    """A resting length as MuJoCo reads it: -1 alone has a meaning of its own there."""
+    return number(length if length != -1.0 else -1.0 - 1e-15)
+
+
+def add_tendons(loads: ModelLoads, tendons: ET.Element) -> None:
+    """Springs and dampers."""
+    for load in loads.tendons:
+        tendon = ET.SubElement(
+            tendons, "spatial" if load.sites else "fixed", name=load.name, attrib=dict(load.properties)
+        )
+        for site in load.sites:
+            ET.SubElement(tendon, "site", site=site)
+        for joint, factor in load.joints.items():
+            ET.SubElement(tendon, "joint", joint=joint, coef=number(factor))
