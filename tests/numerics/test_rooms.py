@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -55,3 +59,45 @@ def test_more_than_is_kept_is_fresh(monkeypatch: pytest.MonkeyPatch) -> None:
         assert not room.any()
         room[:] = 7.0
         del room
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no forks")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_fork_writes_into_memory_of_its_own() -> None:
+    """Results of a process are not those of its forks, whether they are kept or given back."""
+    kept, _blank = fresh_room(NUMBERS)
+    gone, _blank = fresh_room(2 * NUMBERS)
+    kept[:] = 7.0
+    del gone
+    child = os.fork()
+    if not child:
+        kept[:] = 3.0
+        os._exit(0 if (kept == 3.0).all() else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert (kept == 7.0).all()
+    again, _blank = fresh_room(2 * NUMBERS)
+    again[:] = 5.0
+    other = os.fork()
+    if not other:
+        again[:] = 1.0
+        os._exit(0)
+    os.waitpid(other, 0)
+    assert (again == 5.0).all()
+
+
+@pytest.mark.skipif(not Path("/proc/self/smaps").exists(), reason="the system says nothing of its pages")
+def test_pages_are_huge_where_the_system_has_any() -> None:
+    """Memory of a sweep is as fast as NumPy's own: shared memory had small pages."""
+    allowed = Path("/sys/kernel/mm/transparent_hugepage/enabled")
+    if not allowed.exists() or "[never]" in allowed.read_text(encoding="utf-8"):
+        pytest.skip("the system has no huge pages")
+    room, _blank = fresh_room(2_000_000)
+    room[:] = 1.0
+    text = Path("/proc/self/smaps").read_text(encoding="utf-8")
+    place = room.ctypes.data
+    for block in re.split(r"\n(?=[0-9a-f]+-[0-9a-f]+ )", text):
+        first, last = (int(x, 16) for x in block.split(maxsplit=1)[0].split("-"))
+        if first <= place < last:
+            assert block.split()[1] == "rw-p"
+            return
+    raise AssertionError("the memory is not among that of the process")

@@ -294,3 +294,16 @@ def test_nothing_known(make, tmp_path):
     for name in ("paths", "angles", "velocities"):
         assert "no sample has a value here" in [text.get_text() for text in figures[name].axes[0].texts]
     save_figures({name: figures[name] for name in ("mechanism", "paths", "angles")}, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("inches", "ticks"), [(0.3, [30, 60]), (0.6, [30, 40, 50, 60]), (2.0, [30, 35, 40, 45, 50, 55, 60])]
+)
+def test_round_angles_have_room_beside_each_other(inches: float, ticks: list[float]) -> None:
+    """In a low panel every second angle, or fewer, but never one alone."""
+    figure = Figure(figsize=(6.0, inches + 1.0))
+    axes = figure.add_axes((0.1, 0.5 / (inches + 1.0), 0.8, inches / (inches + 1.0)))
+    axes.set_ylim(29.0, 61.0)
+    curves.angle_ticks(axes.yaxis, 30.0, 60.0, "deg", 6)
+    drawn = [float(x) for x in axes.get_yticks() if 29.0 <= x <= 61.0]
+    assert drawn == ticks

@@ -12,7 +12,7 @@ from scipy.stats import qmc
 import centrode as ct
 from centrode.sweeps import designs
 from centrode.sweeps.designs import design_of
-from centrode.sweeps.drawn_designs import Drawn, key_of, permuted
+from centrode.sweeps.drawn_designs import Drawn, key_of, permute
 
 RANGES = {"links.AB.length": (3.4, 3.6), "links.DB.length": ("2.9 m", 3.1), "frame.points.D.x": (3.9, 4.1)}
 SPANS = {"a": (0.0, 1.0), "b": (2.0, 4.0)}
@@ -49,7 +49,7 @@ def test_a_hypercube_takes_each_slice_once(count: int) -> None:
         slices = np.sort(np.floor(unit * count * (1.0 - 2.0**-50)))
         assert (slices == np.arange(count)).all()
     assert (
-        np.sort(permuted(np.arange(count, dtype=np.uint64), count, key_of(1, 2, 3))) == np.arange(count)
+        np.sort(permute(np.arange(count, dtype=np.uint64), count, key_of(1, 2, 3))) == np.arange(count)
     ).all()
 
 

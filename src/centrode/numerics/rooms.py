@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import mmap
+import sys
 import threading
 import weakref
 from typing import TypeAlias
@@ -46,7 +47,11 @@ def fresh_room(numbers: int) -> tuple[Array, bool]:
 
 def _pages(size: int) -> mmap.mmap:
     """Pages that are not made yet, huge ones where there are some."""
-    memory = mmap.mmap(-1, size)
+    if sys.platform == "win32":
+        return mmap.mmap(-1, size)
+    # private: of memory that is shared there are small pages only, which take three times as long to make, and a fork
+    # would write into the results of its parent
+    memory = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
     if hasattr(mmap, "MADV_HUGEPAGE"):
         # a system without huge pages refuses, and gives small ones
         with contextlib.suppress(OSError):

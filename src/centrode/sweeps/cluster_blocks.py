@@ -57,12 +57,12 @@ def work_text(
         if isinstance(outputs, Mapping)
         else outputs
         if outputs is None
-        else _listed(outputs),
+        else _plain_outputs(outputs),
         "reduce": dict(reduce) if isinstance(reduce, Mapping) else reduce,
         "gradient": gradient,
         "samples": [_plain(end) for end in span],
         "tables": {
-            name: [None if np.isnan(x) else float(x) for x in table.given]
+            name: [None if np.isnan(x) else float(x) for x in table.numbers]
             for name, table in asked.tables.items()
         }
         or None,
@@ -72,7 +72,7 @@ def work_text(
     return json.dumps(told, sort_keys=True)
 
 
-def _listed(outputs: Any) -> Any:
+def _plain_outputs(outputs: Any) -> Any:
     return outputs if isinstance(outputs, str) else list(outputs)
 
 
@@ -130,13 +130,13 @@ def _workplace(store: str, digest: str) -> _Workplace:
     # several threads of a worker wait for the plan that one of them makes
     with _one_at_a_time:
         if key not in _workplaces:
-            _workplaces[key] = _made(storage_of(store), digest)
+            _workplaces[key] = _make_workplace(storage_of(store), digest)
             while len(_workplaces) > REMEMBERED:
                 _workplaces.popitem(last=False)
         return _workplaces[key]
 
 
-def _made(storage: Storage, digest: str) -> _Workplace:
+def _make_workplace(storage: Storage, digest: str) -> _Workplace:
     content = storage.read(WORK, MOST_TEXT)
     if content is None or hashlib.sha256(content).hexdigest() != digest:
         what = _("the store of the sweep is not there")

@@ -148,19 +148,19 @@ class Cluster:
         work = _Running(self, function, dict(wanted))
         waiting = iter(texts)
         try:
-            with self._told():
+            with self._tell_of_losses():
                 work.fill(waiting)
             while work.running:
-                with self._told():
+                with self._tell_of_losses():
                     ready = work.ready()
                 yield from ready
-                with self._told():
+                with self._tell_of_losses():
                     work.fill(waiting)
         finally:
             work.give_up()
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _tell_of_losses(self) -> Iterator[None]:
         """What the client says when its scheduler is gone, as InputError."""
         try:
             yield
@@ -217,7 +217,7 @@ class _Running:
         futures = self._wait()
         finished = [future for future in futures if future.status == "finished"]
         found = [
-            (self.running.pop(future)[0], self._found(json.loads(text)))
+            (self.running.pop(future)[0], self._answer_of(json.loads(text)))
             for future, text in zip(finished, self.cluster.client.gather(finished), strict=True)
         ]
         for future in futures:
@@ -265,7 +265,7 @@ class _Running:
             raise InputError(self.cluster.name, what, _("give workers more memory"))
         self._hand_out(number, text, deaths + 1)
 
-    def _found(self, told: Mapping[str, Any]) -> Any:
+    def _answer_of(self, told: Mapping[str, Any]) -> Any:
         if REFUSED in told:
             raise _refusal(told["worker"], told[REFUSED], self.wanted)
         if FAILED in told:

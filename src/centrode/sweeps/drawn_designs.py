@@ -107,7 +107,7 @@ class Drawn:
         """Numbers in [0, 1) of a path, at places of the sample."""
         if self.method == SOBOL:
             return sobol_numbers(self.seed, len(self.ranges), path, places, self.count)
-        slices = permuted(places, self.count, key_of(self.seed, path, 0))
+        slices = permute(places, self.count, key_of(self.seed, path, 0))
         within = unit_numbers(places, key_of(self.seed, path, 1))
         return np.asarray((slices + within) / self.count)
 
@@ -150,7 +150,7 @@ def key_of(seed: int, path: int, use: int) -> Places:
     return np.asarray(np.random.SeedSequence([seed, path, use]).generate_state(ROUNDS, np.uint64))
 
 
-def mixed(numbers: Places) -> Places:
+def mix_bits(numbers: Places) -> Places:
     """Numbers whose bits depend on all bits of those given (the finalizer of SplitMix64)."""
     numbers = numbers + _STEP
     numbers = (numbers ^ (numbers >> np.uint64(30))) * _MIX[0]
@@ -160,10 +160,10 @@ def mixed(numbers: Places) -> Places:
 
 def unit_numbers(places: Places, key: Places) -> Array:
     """Numbers in [0, 1) with 53 bits, one for each place."""
-    return np.asarray((mixed(mixed(places ^ key[0]) ^ key[1]) >> np.uint64(11)) * 2.0**-53)
+    return np.asarray((mix_bits(mix_bits(places ^ key[0]) ^ key[1]) >> np.uint64(11)) * 2.0**-53)
 
 
-def permuted(places: Places, count: int, key: Places) -> Places:
+def permute(places: Places, count: int, key: Places) -> Places:
     """Where a keyed permutation of 0 ... count - 1 sends these places."""
     half = max(1, -(-(count - 1).bit_length() // 2))
     found = _network(places, half, key)
@@ -179,7 +179,7 @@ def _network(numbers: Places, half: int, key: Places) -> Places:
     low, mask = np.uint64(half), np.uint64((1 << half) - 1)
     left, right = numbers >> low, numbers & mask
     for k in range(ROUNDS):
-        left, right = right, left ^ (mixed(right ^ key[k]) & mask)
+        left, right = right, left ^ (mix_bits(right ^ key[k]) & mask)
     return (left << low) | right
 
 

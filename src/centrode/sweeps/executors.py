@@ -98,7 +98,7 @@ def _machine_code_executor(
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     executor = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
     # what expressions cannot say is told before anything is computed; all are known then, and threads share them
-    _ = executor.asked.written, executor.asked.final
+    _ = executor.asked.written_columns, executor.asked.final
     task.kept[kernels, threads] = executor
     return executor
 

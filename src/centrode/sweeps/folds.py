@@ -257,7 +257,7 @@ class Slopes:
     def _split(self, still: Graph) -> tuple[Graph, Graph, dict[str, Node]]:
         """Parts that stand while samples are passed, the rest with these as variables, and all that stands in it."""
         # what differs from sample to sample, and what jumps, cannot stand still
-        jumping = self.moving | self.given.keys()
+        jumping = self.moving | self.given_numbers.keys()
         variables = [x for x in still.variables if x not in jumping]
         parts, rest = split_graph(still, variables, f"{next(iter(still.outputs))} part")
         return parts, rest, {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
@@ -304,7 +304,7 @@ class Slopes:
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
     @cached_property
-    def given(self) -> dict[str, Node]:
+    def given_numbers(self) -> dict[str, Node]:
         """Name -> what derivatives by dimensions take as given: what stands, and what implicit functions hold."""
         return {**self.standing, **(self.implied.held if self.implied else {})}
 
@@ -327,7 +327,9 @@ class Slopes:
 
         def replacement(node: Node, _arguments: tuple[Node, ...]) -> Node | None:
             closed = self._closed_forms.get(node)
-            return self.given.get(str(node.detail)) if closed is None and not node.arguments else closed
+            return (
+                self.given_numbers.get(str(node.detail)) if closed is None and not node.arguments else closed
+            )
 
         return Graph(rebuilt(slopes.outputs, replacement))
 

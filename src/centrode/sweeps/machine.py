@@ -240,7 +240,7 @@ class MachineCodeExecutor:
         """One of the passes over the samples; the same for all batches."""
         key = depth, certain
         if key not in self._foldings:
-            self._foldings[key] = self._passing.reducing(self._states(depth, certain))
+            self._foldings[key] = self._passing.reducer_of(self._states(depth, certain))
         return self._foldings[key]
 
     @cached_property
@@ -270,7 +270,9 @@ class MachineCodeExecutor:
             # what is written is judged as it is written
             judged = {RESIDUAL, SLACK, SURE}
             rows = replace(rows, more={name: row for name, row in rows.more.items() if name not in judged})
-        every = EverySample(self.asked.written, results, at, self.asked.samples, self._passing.fixed)
+        every = EverySample(
+            self.asked.written_columns, results, at, self.asked.samples, self._passing.fixed_numbers
+        )
         return self._passing.write_samples(rows, every.rooms())
 
 

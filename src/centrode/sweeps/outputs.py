@@ -322,7 +322,8 @@ class OutputFormula:
         counted = ok if known is None else ok & known
         with np.errstate(all="ignore"):
             value = np.asarray(
-                self._value(Folding(counted), self._given(solved, values, before)), dtype=np.float64
+                self._value(Folding(counted), self._values_of_variables(solved, values, before)),
+                dtype=np.float64,
             )
         before[self.name] = value
         if self.at_samples:
@@ -334,14 +335,16 @@ class OutputFormula:
 
     def trace(self, m: Any, solved: Solved, values: Mapping[str, Any], before: dict[str, Any]) -> Any:
         """Value of the formula as an expression: `solved` is of one sample, `m` folds over samples."""
-        before[self.name] = value = self._value(m, self._given(solved, values, before, of_one=True))
+        before[self.name] = value = self._value(
+            m, self._values_of_variables(solved, values, before, of_one=True)
+        )
         return value
 
     def _value(self, m: Any, given: Mapping[str, Any]) -> Any:
         value = self.text(m, **given)
         return value if self.reduction is None else m.fold(self.reduction, value)
 
-    def _given(
+    def _values_of_variables(
         self, solved: Solved, values: Mapping[str, Any], before: Mapping[str, Any], *, of_one: bool = False
     ) -> dict[str, Any]:
         given: dict[str, Any] = {}

@@ -50,7 +50,7 @@ class SampleTable:
         return hashlib.sha256(self.values.tobytes() + known).hexdigest()
 
     @property
-    def given(self) -> Array:
+    def numbers(self) -> Array:
         """The numbers as they were given: NaN where there is none."""
         return self.values if self.known is None else np.where(self.known, self.values, np.nan)
 

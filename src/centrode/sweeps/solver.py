@@ -95,10 +95,10 @@ class Frame:
 
     def copy(self) -> Frame:
         """The same with arrays of its own."""
-        arrays = {name: _sealed(array.copy()) for name, array in self.arrays.items()}
+        arrays = {name: _read_only(array.copy()) for name, array in self.arrays.items()}
         outputs = {name: np.copy(x) if isinstance(x, np.ndarray) else x for name, x in self.outputs.items()}
         return Frame(
-            self.solver, self.values, _sealed(self.status.copy()), arrays.get(RESIDUAL, self.residual.copy()),
+            self.solver, self.values, _read_only(self.status.copy()), arrays.get(RESIDUAL, self.residual.copy()),
             self.events, arrays, outputs, self.is_clear,
         )  # fmt: skip
 
@@ -190,7 +190,7 @@ class Solver:
             self._plan = kept_plan(self._free)
         if self._plan is None:
             self._trace(executor)
-        self._ok = _sealed(np.zeros(self.samples, dtype=np.int8))
+        self._ok = _read_only(np.zeros(self.samples, dtype=np.int8))
         self._local = threading.local()
 
     def _trace(self, executor: str) -> None:
@@ -215,7 +215,7 @@ class Solver:
     def __reduce__(self) -> tuple[Any, ...]:
         """A solver is handed on by its description; the other process makes its own plan."""
         grid, outputs = self._settings
-        return _rebuilt, (mechanism_text(self.mechanism), self.free, grid, outputs)
+        return _rebuild, (mechanism_text(self.mechanism), self.free, grid, outputs)
 
     @property
     def columns(self) -> tuple[LiveColumn, ...]:
@@ -271,7 +271,7 @@ class Solver:
         if type(values) is list and len(values) == len(self.free) and _FLOATS.issuperset(map(type, values)):
             given: tuple[float, ...] = tuple(values)
         else:
-            given = self._given(values)
+            given = self._read_values(values)
         if not self._possible(given):
             return self._without_values(given)
         if self._plan is not None:
@@ -279,7 +279,7 @@ class Solver:
             if self._plan.move(given, kept.memory):
                 outputs = {} if self._outputs is None else self._outputs_of(given)
                 return _frame_like(kept.frame, given, outputs)
-        return self._frame_of(given, self._solved(given))
+        return self._frame_of(given, self._solve(given))
 
     def outputs(self, values: Values) -> Any:
         """All numbers of the outputs with these values, (numbers,) one output after the other; one alone as a float.
@@ -292,7 +292,7 @@ class Solver:
         ((74,), (74, 1))
         """
         asked = self._require_outputs()
-        return asked.joined(self._outputs_of(self._given(values)))
+        return asked.join_numbers(self._outputs_of(self._read_values(values)))
 
     def gradient(self, values: Values) -> Array:
         """Derivatives of the outputs by the free numbers, (numbers, free); of one number alone (free,).
@@ -304,13 +304,13 @@ class Solver:
         if self._live is None:
             what = _("derivatives cannot be computed here: {reason}").format(reason=_(self._reason))
             raise InputError("gradient", what, _("omit gradient"))
-        given = self._given(values)
+        given = self._read_values(values)
         # what cannot be differentiated is told for any values
         self._live.require_slopes()
         if not self._possible(given):
             return asked.blank(len(self.free))
         found = self._live.gradient(given, self._memory())
-        return self._live.gradient_with_events(given, self._solved(given)) if found is None else found
+        return self._live.gradient_with_events(given, self._solve(given)) if found is None else found
 
     def split(self, numbers: Array) -> dict[str, Array]:
         """Output -> its part of what `outputs` or `gradient` gives, in its own shape."""
@@ -318,14 +318,14 @@ class Solver:
 
     def dataset(self, values: Values) -> xr.Dataset:
         """The labelled motion with these numbers. Raises InputError where no description can have them."""
-        given = self._given(values)
+        given = self._read_values(values)
         changed = with_values(self.mechanism, dict(zip(self.free, given, strict=True)))
-        data = dataset_of(self._solved(given))
+        data = dataset_of(self._solve(given))
         return data.assign_attrs(mechanism=mechanism_text(changed))
 
     # values as they are given
 
-    def _given(self, values: Values) -> tuple[float, ...]:
+    def _read_values(self, values: Values) -> tuple[float, ...]:
         if isinstance(values, np.ndarray):
             values = values.tolist()
         elif isinstance(values, Mapping):
@@ -353,7 +353,8 @@ class Solver:
 
     def _possible(self, given: tuple[float, ...]) -> bool:
         """Whether a description can have these numbers."""
-        if not all(map(math.isfinite, given)):
+        # one sum tells of all numbers, but of great ones, whose sum may be infinite
+        if not math.isfinite(sum(given)) and not all(map(math.isfinite, given)):
             return False
         for k in self._positive:
             if given[k] <= 0.0:
@@ -376,15 +377,15 @@ class Solver:
     def _kept_frame(self) -> _KeptFrame:
         memories: list[_KeptFrame] | None = getattr(self._local, "memories", None)
         if memories is None:
-            memories = self._local.memories = [self._made_frame()]
+            memories = self._local.memories = [self._make_frame()]
         kept = memories[0]
         if not kept.is_free:
-            kept = next((each for each in memories if each.is_free), None) or self._made_frame()
+            kept = next((each for each in memories if each.is_free), None) or self._make_frame()
             # the one that is used stands first, what has not been used for long is left to those who have it
             memories[:] = [kept, *(each for each in memories if each is not kept)][:MEMORIES]
         return kept
 
-    def _made_frame(self) -> _KeptFrame:
+    def _make_frame(self) -> _KeptFrame:
         assert self._plan is not None
         return _KeptFrame(self, self._plan.memory(), self._ok)
 
@@ -392,21 +393,21 @@ class Solver:
         """Memory to judge a mechanism in; what a frame shows of it is not written to."""
         return self._kept_frame().memory
 
-    def _solved(self, given: tuple[float, ...]) -> Solved:
+    def _solve(self, given: tuple[float, ...]) -> Solved:
         return solve(self._free.ready, self._span, self._free.dimensions(given), 1)
 
     def _frame_of(self, given: tuple[float, ...], solved: Solved) -> Frame:
-        arrays = {name: _sealed(np.asarray(values)[0]) for name, values in quantities_of(solved).items()}
-        arrays[RESIDUAL] = residual = _sealed(solved.residual[0])
+        arrays = {name: _read_only(np.asarray(values)[0]) for name, values in quantities_of(solved).items()}
+        arrays[RESIDUAL] = residual = _read_only(solved.residual[0])
         outputs = {} if self._outputs is None else self._outputs.of(solved, given)
-        status = _sealed(solved.status[0])
+        status = _read_only(solved.status[0])
         return Frame(self, given, status, residual, tuple(solved.events()), arrays, outputs, False)
 
     def _without_values(self, given: tuple[float, ...]) -> Frame:
         """A frame of numbers that no description can have: open everywhere."""
-        blank = self._frame_of(self.own, self._solved(self.own))
-        arrays = {name: _sealed(np.full_like(array, np.nan)) for name, array in blank.arrays.items()}
-        status = _sealed(np.full(self.samples, Status.OPEN, dtype=np.int8))
+        blank = self._frame_of(self.own, self._solve(self.own))
+        arrays = {name: _read_only(np.full_like(array, np.nan)) for name, array in blank.arrays.items()}
+        status = _read_only(np.full(self.samples, Status.OPEN, dtype=np.int8))
         outputs = {} if self._outputs is None else self._outputs.without_values()
         return Frame(self, given, status, arrays[RESIDUAL], (), arrays, outputs, False)
 
@@ -417,7 +418,7 @@ class Solver:
         if not self._possible(given):
             return asked.without_values()
         found = None if self._live is None else self._live.values(given, self._memory())
-        return asked.of(self._solved(given), given) if found is None else found
+        return asked.of(self._solve(given), given) if found is None else found
 
     def _require_outputs(self) -> SolverOutputs:
         if self._outputs is None:
@@ -481,7 +482,7 @@ def solver(
     return Solver(mechanism, paths, (samples, start, stop, at), outputs)
 
 
-def _rebuilt(text: str, free: Sequence[str], grid: tuple[Any, ...], outputs: Asked) -> Solver:
+def _rebuild(text: str, free: Sequence[str], grid: tuple[Any, ...], outputs: Asked) -> Solver:
     return Solver(parse_mechanism(text), free, grid, outputs)
 
 
@@ -496,7 +497,7 @@ def _kinds(mechanism: Mechanism, paths: Sequence[str]) -> list[str]:
     return kinds
 
 
-def _sealed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def _read_only(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     view = array.view()
     view.flags.writeable = False
     return view

@@ -96,7 +96,7 @@ class SolverOutputs:
             for column in self.columns
         }
 
-    def joined(self, outputs: Mapping[str, Any]) -> Any:
+    def join_numbers(self, outputs: Mapping[str, Any]) -> Any:
         """All numbers in a row; one alone as it is."""
         if self.numbers == 1:
             return float(np.ravel(outputs[self.columns[0].name])[0])
@@ -174,8 +174,8 @@ class _SlopesByPaths(Slopes):
     def of_nodes(self, nodes: Sequence[Node]) -> list[dict[str, Node]]:
         """Path -> derivative of each node; forward mode where there are more of them than paths."""
         used = frozenset(Graph({str(k): node for k, node in enumerate(nodes)}).variables)
-        folded = any(fold.name in used for fold in self.folds.found.values())
-        if len(nodes) <= len(self.through) or folded:
+        folds_inside = any(fold.name in used for fold in self.folds.found.values())
+        if len(nodes) <= len(self.through) or folds_inside:
             return [self.of_node(node) for node in nodes]
         still = [self._without_standing(node) for node in nodes]
         found = directional_derivatives(still, [dict(through) for through in self.through.values()])
@@ -325,7 +325,7 @@ class _Part:
         ]
 
     @cached_property
-    def folded(self) -> dict[tuple[Any, ...], int]:
+    def fold_rows(self) -> dict[tuple[Any, ...], int]:
         """Rows of what is folded."""
         return {key: row for key, row in self.rows.items() if key[0] in ("fold", "part")}
 
@@ -363,9 +363,9 @@ class LiveOutputs:
         if found is None:
             return None
         known, _columns, slopes = found
-        return self._joined(slopes, evaluate(self.expressed.final_slopes, known))
+        return self._join_slopes(slopes, evaluate(self.expressed.final_slopes, known))
 
-    def _joined(self, slopes: Mapping[str, Array], reduced: Mapping[str, Any]) -> Array:
+    def _join_slopes(self, slopes: Mapping[str, Array], reduced: Mapping[str, Any]) -> Array:
         """Derivatives of all numbers, from those at samples and the reduced ones."""
         paths, rows = self.free.paths, []
         for column in self.asked.columns:
@@ -409,7 +409,7 @@ class LiveOutputs:
             }
             for fold in each.folds:
                 _fold(values, fold, counted)
-        return self._joined(slopes, evaluate(expressed.final_slopes, values))
+        return self._join_slopes(slopes, evaluate(expressed.final_slopes, values))
 
     def _of_count(self, samples: int) -> TracedOutputs:
         """The outputs where so many samples count: a mean is divided by that."""
@@ -518,7 +518,7 @@ class LiveOutputs:
                 # NaN fails the comparison: what is not known is not trusted
                 if (GAIN,) in part.rows and not rows[part.rows[GAIN,]].max() < LARGEST_GAIN:
                     return None
-            of_folds = {key: rows[k] for key, k in part.folded.items()}
+            of_folds = {key: rows[k] for key, k in part.fold_rows.items()}
             for fold in part.folds:
                 _fold(known, fold, of_folds)
             for kind, name, numbers, block in part.blocks:

@@ -296,7 +296,7 @@ class MotionLabels:
         if SAMPLE in used:
             # what formulas compare the motion with stands beside it
             coordinates |= {
-                name: ((SAMPLE,), table.given, {"long_name": name}) for name, table in asked.tables.items()
+                name: ((SAMPLE,), table.numbers, {"long_name": name}) for name, table in asked.tables.items()
             }
         told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
         attributes = {**told, "samples": motion.sizes["sample"]}

@@ -103,16 +103,20 @@ class Expressed:
     @cached_property
     def outputs(self) -> dict[str, Node]:
         """All numbers of a sample, column by column as the result has them."""
-        return {f"{name} {k}": node for name, nodes in self.written.items() for k, node in enumerate(nodes)}
+        return {
+            f"{name} {k}": node
+            for name, nodes in self.written_columns.items()
+            for k, node in enumerate(nodes)
+        }
 
     @cached_property
-    def written(self) -> dict[str, list[Node]]:
+    def written_columns(self) -> dict[str, list[Node]]:
         """Column -> its numbers, of those that have a number of every sample."""
         every = self._with_slopes
         return {column.name: every[column.name] for column in streamed_columns(self.task.asked.columns)}
 
     @cached_property
-    def fixed(self) -> dict[int, float]:
+    def fixed_numbers(self) -> dict[int, float]:
         """Of `outputs`: place -> the number that every sample of every mechanism has, as those of fixed points."""
         nodes = enumerate(self.outputs.values())
         return {place: float(node.detail) for place, node in nodes if node.operation == CONSTANT}
@@ -133,7 +137,7 @@ class Expressed:
     @cached_property
     def final(self) -> dict[str, list[Node]]:
         """Reduced columns, and those of derivatives, from the folds."""
-        return {name: nodes for name, nodes in self._with_slopes.items() if name not in self.written}
+        return {name: nodes for name, nodes in self._with_slopes.items() if name not in self.written_columns}
 
     @cached_property
     def _with_slopes(self) -> dict[str, list[Node]]:
@@ -205,10 +209,10 @@ class Expressed:
 
     def check_some(self, rows: Mapping[str, Array]) -> Values:
         """The greatest residual of a few samples, of mechanisms that are certain to close at all of them."""
-        return self._checked.run(rows, self.kernels, self.threads)
+        return self._check_pass.run(rows, self.kernels, self.threads)
 
     @cached_property
-    def _checked(self) -> Pass:
+    def _check_pass(self) -> Pass:
         # residuals of gears and wheels have angles with their turns, which are known when samples are checked
         # a residual is no more than rounding, so functions of its own need not be those of NumPy
         names = (*self._over_some.names, *self._of_angles, *self._standing.function_names)
@@ -296,11 +300,11 @@ Reducing: TypeAlias = Callable[[LaneRows], LaneRows]
 class Passing(Protocol):
     """Way to pass the samples of mechanisms without events."""
 
-    def reducing(self, reduction: Reduction) -> Reducing:
+    def reducer_of(self, reduction: Reduction) -> Reducing:
         """A pass over all samples, for any number of batches."""
 
     @property
-    def fixed(self) -> Mapping[int, float]:
+    def fixed_numbers(self) -> Mapping[int, float]:
         """Numbers that are not written, as they are the same everywhere: place among all -> number."""
 
     def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
@@ -398,7 +402,7 @@ class EachForItself:
 
     asked: Expressed
 
-    def reducing(self, reduction: Reduction) -> Reducing:
+    def reducer_of(self, reduction: Reduction) -> Reducing:
         asked = self.asked
         over_samples = Pass(reduction, asked.names, asked.inputs)
 
@@ -409,8 +413,8 @@ class EachForItself:
         return reduce
 
     @property
-    def fixed(self) -> Mapping[int, float]:
-        return self.asked.fixed
+    def fixed_numbers(self) -> Mapping[int, float]:
+        return self.asked.fixed_numbers
 
     def write_samples(self, rows: LaneRows, rooms: Rooms) -> Mapping[str, Array]:
         scan = self._scan
@@ -435,7 +439,9 @@ class EachForItself:
     def _scan(self) -> Scan:
         """Lanes are samples, steps are mechanisms; judged by extremes over the samples while these are written."""
         asked = self.asked
-        written = [(place, x) for place, x in enumerate(asked.outputs.items()) if place not in asked.fixed]
+        written = [
+            (place, x) for place, x in enumerate(asked.outputs.items()) if place not in asked.fixed_numbers
+        ]
         outputs = dict(x for _place, x in written)
         extremes = {RESIDUAL: LaneExtreme("maximum", self._residual.without_unit, 0.0)}
         if self._residual.lengths is not None:
@@ -455,9 +461,9 @@ class Along:
     """Every place is found from the one before: what is written is judged on the same way."""
 
     asked: Expressed
-    fixed: Mapping[int, float] = field(default_factory=dict)
+    fixed_numbers: Mapping[int, float] = field(default_factory=dict)
 
-    def reducing(self, reduction: Reduction) -> Reducing:
+    def reducer_of(self, reduction: Reduction) -> Reducing:
         asked = self.asked
         walking = Walking(asked.judging.walk, reduction, further=asked.further)
 

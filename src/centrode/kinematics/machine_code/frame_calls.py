@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from operator import itemgetter
 from typing import Any, TypeAlias
 
@@ -39,7 +40,7 @@ from centrode.numerics.executors import (
 )
 from centrode.numerics.expressions import FOLDED, Node, apply_operation, variable
 from centrode.numerics.graphs import Graph, rebuilt
-from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.operations import CONSTANT
 from centrode.numerics.scans import FUNCTIONS, Scan, room_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -60,7 +61,7 @@ class _Stage:
     """Part of a small graph: what libraries round differently, then operations that are rounded correctly.
 
     `groups` are functions with the places of their arguments, all of one kind together; `plain` operations with those
-    of theirs, or `kernel` does these at once, from the numbers at places `inputs`.
+    of theirs, or `kernel` does these at once, from the numbers at places `inputs`, and gives so many outputs.
     """
 
     groups: list[tuple[Callable[..., Any], list[tuple[int, ...]]]]
@@ -68,22 +69,32 @@ class _Stage:
     kernel: Take | None
     inputs: list[int]
     outputs: int
+    first_output: int
 
-    def for_thread(self) -> Callable[[list[Any]], None]:
-        """What adds its numbers to those that are known; with memory of its own."""
+    def for_thread(self, before: _KernelRow | None) -> tuple[Callable[[list[Any]], None], _KernelRow | None]:
+        """What adds its numbers to those that are known, with memory of its own; what its kernel leaves for the next.
+
+        Functions of what the kernel of the stage before has left take it where it stands.
+        """
         plain, kernel, inputs = self.plain, self.kernel, self.inputs
-        packs: dict[tuple[int, ...], _Row] = {}
+        packs: dict[tuple[int, ...], _Row | Array] = {}
         groups = []
         for function, rows in self.groups:
             # functions of the same numbers, as sines and cosines are, share a row
             fresh = [row for row in dict.fromkeys(rows) if row not in packs]
-            packs |= {row: _Row(row) for row in fresh}
-            fill = [packs[row].fill for row in fresh]
-            groups.append((fill, function, [packs[row].numbers for row in rows], np.empty(len(rows[0]))))
+            for row in fresh:
+                standing = None if before is None else before.view(row)
+                packs[row] = _Row(row) if standing is None else standing
+            filled = [packs[row] for row in fresh]
+            fill = [row.fill for row in filled if isinstance(row, _Row)]
+            taken = [row.numbers if isinstance(row, _Row) else row for row in map(packs.__getitem__, rows)]
+            groups.append((fill, function, taken, np.empty(len(rows[0]))))
+        left: _KernelRow | None = None
         if kernel is not None:
             given, room = _Row(tuple(inputs)), room_of(self.outputs, 1, LANES)
             fill_kernel, first = given.fill, room[:, 0, 0]
             call = _one_call(kernel, given.numbers[:, None], room)
+            left = _KernelRow(self.first_output, first)
 
         def add(numbers: list[Any]) -> None:
             for fill, function, rows, results in groups:
@@ -97,7 +108,24 @@ class _Stage:
             for operation, at in plain:
                 numbers.append(operation(*[numbers[k] for k in at]))
 
-        return add
+        return add, left
+
+
+@dataclass(frozen=True)
+class _KernelRow:
+    """What a kernel gives, as an array, and the place of the first of these numbers among all."""
+
+    first: int
+    numbers: Array
+
+    def view(self, places: Sequence[int]) -> Array | None:
+        """Numbers at some places, where these are as far from one another as from the next."""
+        start, step = places[0] - self.first, places[1] - places[0] if len(places) > 1 else 1
+        stop = start + step * len(places)
+        if start < 0 or step < 1 or stop - step >= len(self.numbers):
+            return None
+        even = all(b - a == step for a, b in pairwise(places))
+        return self.numbers[start:stop:step] if even else None
 
 
 class _Row:
@@ -144,12 +172,10 @@ class PlainFunction:
         for node in graph.order:
             below = max((depths[x] for x in node.arguments), default=0)
             depths[node] = below + bool(node.arguments and node.operation not in FOLDED)
-        leaves = [node for node in graph.order if not node.arguments]
-        places = {node: k for k, node in enumerate(leaves)}
-        self._start: list[Any] = [node.detail for node in leaves]
-        self._given = [
-            (k, paths.index(str(x.detail))) for k, x in enumerate(leaves) if x.operation == VARIABLE
-        ]
+        # the numbers at the paths come first, as they are given
+        constants = [node for node in graph.order if node.operation == CONSTANT]
+        places = {node: k for k, node in enumerate([*map(variable, paths), *constants])}
+        self._constants: list[Any] = [node.detail for node in constants]
         ends = set(graph.outputs.values())
         self._stages = []
         for depth in range(max(depths.values(), default=0) + 1):
@@ -160,13 +186,15 @@ class PlainFunction:
 
     def for_thread(self) -> Callable[[Given], Sequence[float]]:
         """The function of the numbers at the paths, with memory of its own."""
-        start, given, ends = self._start, self._given, _picked(self._ends)
-        stages = [stage.for_thread() for stage in self._stages]
+        constants, ends = self._constants, _picked(self._ends)
+        stages: list[Callable[[list[Any]], None]] = []
+        left: _KernelRow | None = None
+        for stage in self._stages:
+            add, left = stage.for_thread(left)
+            stages.append(add)
 
         def run(values: Given) -> Sequence[float]:
-            numbers = start.copy()
-            for k, which in given:
-                numbers[k] = values[which]
+            numbers = [*values, *constants]
             for stage in stages:
                 stage(numbers)
             return ends(numbers)
@@ -182,6 +210,8 @@ def _stage_of(inner: Sequence[Node], places: dict[Node, int], later: Container[N
             taken.setdefault(node.operation, []).append(node)
     groups = []
     for operation, nodes in taken.items():
+        # in the order of what they are taken of, so that functions of the same numbers have one row
+        nodes.sort(key=lambda node: [places[x] for x in node.arguments])
         rows = list(zip(*([places[x] for x in node.arguments] for node in nodes), strict=True))
         places |= {node: len(places) + k for k, node in enumerate(nodes)}
         groups.append((FUNCTIONS[operation], rows))
@@ -191,7 +221,7 @@ def _stage_of(inner: Sequence[Node], places: dict[Node, int], later: Container[N
         for node in exact:
             plain.append((FOLDED[node.operation], [places[x] for x in node.arguments]))
             places[node] = len(places)
-        return _Stage(groups, plain, None, [], 0)
+        return _Stage(groups, plain, None, [], 0, 0)
     known = dict(places)
     asked = [node for node in exact if node in later]
 
@@ -201,8 +231,9 @@ def _stage_of(inner: Sequence[Node], places: dict[Node, int], later: Container[N
     graph = Graph(rebuilt({str(k): node for k, node in enumerate(asked)}, replaced))
     scan = Scan((), graph.variables, graph.outputs)
     kernel = streamer(scan, np.empty((0, LANES)), MACHINE_CODE, hasty=True)
-    places |= {node: len(places) + k for k, node in enumerate(asked)}
-    return _Stage(groups, [], kernel, [int(name) for name in graph.variables], len(asked))
+    first = len(places)
+    places |= {node: first + k for k, node in enumerate(asked)}
+    return _Stage(groups, [], kernel, [int(name) for name in graph.variables], len(asked), first)
 
 
 class CalledMemory(FrameMemory):

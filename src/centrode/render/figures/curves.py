@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, MultipleLocator
+from matplotlib.ticker import FuncFormatter, Locator
 from numpy.typing import NDArray
 
 from centrode.locale import _
@@ -102,12 +102,45 @@ def angle_ticks(axis: Axis, low: float, high: float, unit: str, most: int) -> No
     """Ticks at round angles: multiples of 15, 30, 45, 90 degrees, or of parts of pi; others stay as they are."""
     if unit not in STEPS or not high > low or high - low > most * STEPS[unit][-1]:
         return
-    step = next(step for step in STEPS[unit] if (high - low) / step <= most)
-    if high - low < 2 * step:
+    steps = [step for step in STEPS[unit] if (high - low) / step <= most]
+    if high - low < 2 * steps[0]:
         return
-    axis.set_major_locator(MultipleLocator(float(step)))
+    axis.set_major_locator(RoundAngles(steps, low, high))
     if unit == "rad":
         axis.set_major_formatter(FuncFormatter(lambda value, _position: part_of_pi(value)))
+
+
+class RoundAngles(Locator):
+    """Ticks at multiples of a round angle: the least of some steps whose numbers have room along the axis.
+
+    Parameters
+    ----------
+    steps : ascending
+    low, high : range of the curves
+    """
+
+    def __init__(self, steps: Sequence[float], low: float, high: float) -> None:
+        self.steps, self.low, self.high = steps, low, high
+
+    def __call__(self) -> Any:
+        own: Any = self.axis
+        return self.tick_values(*sorted(own.get_view_interval()))
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """The ticks of a view."""
+        own: Any = self.axis
+        # matplotlib gives a number twice its height: one and a third is enough, and round angles are few
+        room = 1.5 * own.get_tick_space()
+        chosen = self.steps[0]
+        for step in self.steps:
+            # one tick alone says nothing of the scale
+            if np.floor(self.high / step) - np.ceil(self.low / step) < 1:
+                break
+            chosen = step
+            if (self.high - self.low) / step <= room:
+                break
+        # as matplotlib's `MultipleLocator`: a step beyond either end, which is not drawn
+        return chosen * np.arange(np.floor(vmin / chosen), np.ceil(vmax / chosen) + 1.0)
 
 
 def part_of_pi(value: float) -> str:
