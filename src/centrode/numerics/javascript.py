@@ -47,7 +47,8 @@ const power = (a, b) => a === 1 || (a === -1 && Math.abs(b) === Infinity) ? 1 : 
 """What printed functions call beside the functions of JavaScript.
 
 The greater and the lesser of two numbers, NaN where one of them is: Math.max takes longer, as it looks at the signs of
-zeros. Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has not.
+zeros. Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has
+not.
 """
 COSTLY = frozenset({"sin", "cos", "atan2", "exp", "log", "power", "sqrt"})
 """Operations that are worth a row of their own where they depend on the place alone."""

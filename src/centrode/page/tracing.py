@@ -175,7 +175,8 @@ class PageTrace:
     rotors : link, or key of a hinge -> cosine and sine of its angle
     counted : what gears and wheels depend on -> its angle without turns
     hinges : key of a hinge -> its angle [rad] in the initial position
-    laws_are_bounded : whether bends of the drives over cells are bounds: of laws of time they are looked at in three places
+    laws_are_bounded : whether bends of the drives over cells are bounds: of laws of time they are looked at in three
+        places of a cell
     missing : why masses and loads are not reduced; empty where they are, or where there are none
     """
 
