@@ -120,7 +120,9 @@ def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame
     low, high = (float(end.replace("Infinity", "inf")) for end in told["reach"])
     signs_change, possible, events = told["signsChange"], told["possible"], told["events"]
     status = rows[0].astype(np.int8)
-    return PageFrame(status, rows[1], rows[2], quantities, centres, events, signs_change, possible, (low, high))
+    return PageFrame(
+        status, rows[1], rows[2], quantities, centres, events, signs_change, possible, (low, high)
+    )
 
 
 def recompute_times(

@@ -106,7 +106,9 @@ def test_a_frame_does_not_depend_on_those_before(name: str) -> None:
     forwards, backwards = page_frames(program, cases), page_frames(program, cases[::-1])[::-1]
     for one, other in zip(forwards, backwards, strict=True):
         assert (one.status == other.status).all() and one.reach == other.reach
-        assert [(e["kind"], e["group"]) for e in one.events] == [(e["kind"], e["group"]) for e in other.events]
+        assert [(e["kind"], e["group"]) for e in one.events] == [
+            (e["kind"], e["group"]) for e in other.events
+        ]
         # roots are taken to a bit of the drive
         apart = [abs(e["drive"] - f["drive"]) for e, f in zip(one.events, other.events, strict=True)]
         assert max(apart, default=0.0) <= 1e-13
