@@ -37,7 +37,7 @@ for (const values of cases) {
   const acting = mechanism.reactions();
   quantities.push(...data.reactions.map((each) => rows(acting[each.name])));
   const all = [...quantities.flat(), ...centres.flatMap(({ fixed, moving }) => [...fixed, ...moving])];
-  for (const row of [Float64Array.from(frame.status), frame.residual, ...all]) numbers.push(row.slice());
+  for (const row of [Float64Array.from(frame.status), frame.residual, frame.misfit, ...all]) numbers.push(row.slice());
   const { events, signsChange, possible } = frame;
   // JSON has no infinite numbers
   told.push({ events, signsChange, possible, reach: Array.from(frame.reach, String) });
@@ -67,7 +67,7 @@ class PageFrame:
 
     Attributes
     ----------
-    status, residual : (samples,)
+    status, residual, misfit : (samples,)
     quantities : name -> (samples, ...), as a motion and its reactions have them
     centres : link of the plane -> fixed and moving centrode (samples, 4)
     events : as the page has them
@@ -75,6 +75,7 @@ class PageFrame:
 
     status: npt.NDArray[np.int8]
     residual: Array
+    misfit: Array
     quantities: dict[str, Array]
     centres: dict[str, Array]
     events: Sequence[dict[str, Any]]
@@ -107,7 +108,7 @@ def page_frames(program: PageProgram, cases: Sequence[Sequence[float]]) -> list[
 
 
 def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame:
-    quantities, first = {}, 2
+    quantities, first = {}, 3
     for each in [*program.data["quantities"], *program.data["reactions"]]:
         shape = np.shape(each["rows"])
         count = int(np.prod(shape, dtype=int))
@@ -119,7 +120,9 @@ def _frame(program: PageProgram, told: dict[str, Any], rows: Array) -> PageFrame
     low, high = (float(end.replace("Infinity", "inf")) for end in told["reach"])
     signs_change, possible, events = told["signsChange"], told["possible"], told["events"]
     status = rows[0].astype(np.int8)
-    return PageFrame(status, rows[1], quantities, centres, events, signs_change, possible, (low, high))
+    return PageFrame(
+        status, rows[1], rows[2], quantities, centres, events, signs_change, possible, (low, high)
+    )
 
 
 def recompute_times(

@@ -6,8 +6,16 @@ import pytest
 from tools.campaigns.pages.cases import CAMPAIGN, names
 from tools.node import MISSING, NODE
 
-SAMPLE = ("double-rocker", "geared-five-bar", "parallelogram", "spherical-crank-guide", "third-class-triad")
-"""Limits; gears; change points; guides that close on the sphere; a group that is refused by name."""
+SAMPLE = (
+    "double-rocker",
+    "klann-leg",
+    "geared-five-bar",
+    "parallelogram",
+    "spherical-crank-guide",
+    "third-class-triad",
+)
+"""Limits, of groups behind each other too; gears; change points; guides that close on the sphere; a group that is
+refused by name."""
 
 
 @pytest.mark.skipif(NODE is None, reason=MISSING)

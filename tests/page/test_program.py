@@ -85,6 +85,50 @@ def test_limits_are_those_of_the_law_of_cosines() -> None:
 
 
 @needs_node
+def test_limits_of_a_motion_to_and_fro_are_found() -> None:
+    """The wiper swings about its initial position: its first and last samples are one place."""
+    program = page_program("wiper", {"links.DB.length": (0.3, 0.9)})
+    (frame,) = page_frames(program, [[0.48]])
+    (limit,) = frame.events
+    # blade (0.1 m) and arm in line: the way from A to D, 0.1 m beside the other arm's hinge, is their sum
+    assert math.cos(limit["drive"]) == pytest.approx((0.6**2 + 0.1**2 - 0.58**2) / (2 * 0.6 * 0.1), abs=1e-13)
+    drive = np.array(program.data["places"]["parameter"])
+    assert ((frame.status == Status.OPEN) == (drive > limit["drive"])).all()
+
+
+@needs_node
+@pytest.mark.parametrize("name", ["jansen-leg", "scissor-lift", "five-bar-two-drives"])
+def test_a_frame_does_not_depend_on_those_before(name: str) -> None:
+    """Where events are looked for first follows from the frame before, and what is found does not."""
+    program = page_program(name)
+    random, own = np.random.default_rng(5), np.array([parameter.value for parameter in program.parameters])
+    cases = [(own * (1.0 + 0.25 * random.uniform(-1.0, 1.0, len(own)))).tolist() for _ in range(12)]
+    forwards, backwards = page_frames(program, cases), page_frames(program, cases[::-1])[::-1]
+    for one, other in zip(forwards, backwards, strict=True):
+        assert (one.status == other.status).all() and one.reach == other.reach
+        assert [(e["kind"], e["group"]) for e in one.events] == [
+            (e["kind"], e["group"]) for e in other.events
+        ]
+        # roots are taken to a bit of the drive
+        apart = [abs(e["drive"] - f["drive"]) for e, f in zip(one.events, other.events, strict=True)]
+        assert max(apart, default=0.0) <= 1e-13
+        for quantity, values in one.quantities.items():
+            np.testing.assert_array_equal(values, other.quantities[quantity])
+
+
+@needs_node
+def test_numbers_that_contradict_each_other_leave_their_residual() -> None:
+    program = page_program("three-crank-parallelogram", {"links.FE.length": (0.5, 1.5)})
+    fits, not_quite, slightly, off = page_frames(program, [[1.0], [1.0 + 1e-9], [1.0 + 1e-6], [1.1]])
+    for frame in (fits, not_quite):
+        assert (frame.status == Status.OK).all() and np.isnan(frame.misfit).all()
+    for frame, length in ((slightly, 1.0 + 1e-6), (off, 1.1)):
+        assert (frame.status == Status.OPEN).all() and np.isnan(frame.quantities["position"][:, -1]).all()
+        # the pins of the third crank stay 1 m apart: in units of its length, squared, 1 is what is wanted
+        np.testing.assert_allclose(frame.misfit, 1.0 - length**-2, rtol=1e-8)
+
+
+@needs_node
 def test_impossible_numbers_are_shown_and_not_broken() -> None:
     program = page_program("crank-rocker")
     own = [parameter.value for parameter in program.parameters]

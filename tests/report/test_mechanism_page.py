@@ -321,7 +321,8 @@ def test_what_a_forged_link_keeps_is_not_trusted(running: Any, pages: Callable[.
     whole: dict[str, Any] = {"v": {}, "p": 3.0, "c": ["position.C"], "s": ["paths"], "r": 0.0}
     turned = {"w": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]}
     wrong = [
-        [], None, {}, {**whole, "v": []}, {**whole, "v": {"links.AB.length": 1e9}}, {**whole, "v": {"links.AB.length": "1"}},
+        [], None, {}, {**whole, "v": []},
+        {**whole, "v": {"links.AB.length": 1e9}}, {**whole, "v": {"links.AB.length": "1"}},
         {**whole, "v": {"links.__proto__.length": 1.0}}, {**whole, "p": None}, {**whole, "r": "fast"},
         {**whole, "w": [[0.0] * 3] * 3}, {**whole, "w": [[1e300, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]},
         {**whole, "k": "nothing"}, {**whole, "k": {}},

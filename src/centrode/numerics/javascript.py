@@ -47,7 +47,8 @@ const power = (a, b) => a === 1 || (a === -1 && Math.abs(b) === Infinity) ? 1 : 
 """What printed functions call beside the functions of JavaScript.
 
 The greater and the lesser of two numbers, NaN where one of them is: Math.max takes longer, as it looks at the signs of
-zeros. Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has not.
+zeros. Of two numbers the one that is a number; powers of 1 by what is no number, which IEEE 754 has and JavaScript has
+not.
 """
 COSTLY = frozenset({"sin", "cos", "atan2", "exp", "log", "power", "sqrt"})
 """Operations that are worth a row of their own where they depend on the place alone."""
@@ -124,11 +125,11 @@ def once(outputs: Sequence[Node], of_mechanism: Mapping[str, int]) -> str:
 
 def _names(names: Sequence[str]) -> str:
     # names of users stand in them: as JSON writes texts, with what would end a script escaped
-    quoted = (f'"{_escaped(name)}"' for name in names)
+    quoted = (f'"{_escape(name)}"' for name in names)
     return f"[{', '.join(quoted)}]"
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return "".join(
         c if (c.isalnum() and c.isascii()) or c in " _-.,:" else f"\\u{{{ord(c):x}}}" for c in text
     )
@@ -238,15 +239,15 @@ def _lines(
         elif node.operation == VARIABLE:
             text = names[str(node.detail)], ALONE
             if of_loop and node in ends:
-                text = _named(lines, f"{letter}{begun + len(lines)}", text)
+                text = _give_name(lines, f"{letter}{begun + len(lines)}", text)
         else:
             text = JAVASCRIPT.text(node, [texts[x] for x in node.arguments])
             if (of_loop and node in ends) or is_worth_a_line(node, text, uses[node], node in ends):
-                text = _named(lines, f"{letter}{begun + len(lines)}", text)
+                text = _give_name(lines, f"{letter}{begun + len(lines)}", text)
         texts[node] = text
     return lines, texts
 
 
-def _named(lines: list[str], name: str, text: Text) -> Text:
+def _give_name(lines: list[str], name: str, text: Text) -> Text:
     lines.append(f"const {name} = {text[0]};")
     return name, ALONE

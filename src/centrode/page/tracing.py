@@ -108,7 +108,7 @@ def refuse_laws(ready: Ready) -> None:
 
 
 @dataclass
-class _Traced(EvaluationPolicy):
+class _TracingPolicy(EvaluationPolicy):
     """Signs as variables; keeps radicands, divisors and the angles whose turns are counted."""
 
     m: Namespace
@@ -182,7 +182,8 @@ class PageTrace:
     rotors : link, or key of a hinge -> cosine and sine of its angle
     counted : what gears and wheels depend on -> its angle without turns
     hinges : key of a hinge -> its angle [rad] in the initial position
-    laws_are_bounded : whether bends of the drives over cells are bounds: of laws of time they are looked at in three places
+    laws_are_bounded : whether bends of the drives over cells are bounds: of laws of time they are looked at in three
+        places of a cell
     missing : why masses and loads are not reduced; empty where they are, or where there are none
     """
 
@@ -213,7 +214,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[s
     known = ready.kinematics
     # phases of gears belong to the initial position of the description, as in batches
     kinematics = with_phases(replace(known, numbers=varied.numbers), known.numbers.gearing.phase)
-    policy = _Traced(NODE_JETS, at_samples=True)
+    policy = _TracingPolicy(NODE_JETS, at_samples=True)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), policy)
     layout = layout_of(kinematics)
     columns = columns_of(layout.numbers(NODE_JETS, kinematics.numbers, at))
@@ -221,7 +222,7 @@ def trace_page(ready: Ready, span: SampleGrid, varied: Varied, paths: Sequence[s
         layout, at, columns, ready.assembled.angles, lambda link, _cosine, _sine: variable(turns_of(link))
     )
     solved = motion_of_parts(MotionParts(ready, kinematics, layout, columns, angles), span, varied)
-    reduced, missing = _reduced(solved, paths)
+    reduced, missing = _reductions(solved, paths)
     hinges = _hinges(solved)
     rows, quantities = _rows(solved, turning, reduced, hinges)
     rotors = turning | {hinge_key(hinge): hinge.rotor for hinge in hinges}
@@ -290,7 +291,7 @@ def _hinges(solved: Solved) -> list[TracedHinge]:
     return found
 
 
-def _reduced(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]:
+def _reductions(solved: Solved, paths: Sequence[str]) -> tuple[dict[str, Any], str]:
     """Masses and loads reduced to the drive: name -> (1, 1) nodes, or none and why."""
     mechanism = solved.ready.mechanism
     values = {path: box_array([variable(path)]) for path in paths}
@@ -379,14 +380,14 @@ def _value(number: Number) -> Operand:
     return operand
 
 
-def _guards(policy: _Traced) -> tuple[tuple[str, int], ...]:
+def _guards(policy: _TracingPolicy) -> tuple[tuple[str, int], ...]:
     """Radicands and divisors that move, group by group."""
     found = [(RADICAND, group) for group in policy.radicands]
     found += [(DIVISOR, group) for group, x in policy.divisors.items() if isinstance(x, Jet)]
     return tuple(sorted(found, key=lambda guard: (guard[1], guard[0] == DIVISOR)))
 
 
-def _of_guards(policy: _Traced, guards: tuple[tuple[str, int], ...]) -> dict[tuple[str, int], Number]:
+def _of_guards(policy: _TracingPolicy, guards: tuple[tuple[str, int], ...]) -> dict[tuple[str, int], Number]:
     known = {RADICAND: policy.radicands, DIVISOR: policy.divisors}
     return {(kind, group): known[kind][group] for kind, group in guards}
 
@@ -395,8 +396,8 @@ def _cells(
     kinematics: Kinematics, guards: tuple[tuple[str, int], ...]
 ) -> dict[tuple[str, int], tuple[Node, Node, Node]]:
     """Value and slope of each guard in the middle of a cell, and what bounds its second derivative there."""
-    cells, policy = Cells(variable(HALF), EXPRESSIONS), _Traced(NODE_BENDS)
-    at = Positions.of_frame(kinematics.numbers, _bent_drives(kinematics.path, cells), NODE_BENDS)
+    cells, policy = Cells(variable(HALF), EXPRESSIONS), _TracingPolicy(NODE_BENDS)
+    at = Positions.of_frame(kinematics.numbers, _drive_bends(kinematics.path, cells), NODE_BENDS)
     kinematics.advance(at, range(len(kinematics.structure.groups)), NODE_BENDS, policy)
     found: dict[tuple[str, int], tuple[Node, Node, Node]] = {}
     for guard, number in _of_guards(policy, guards).items():
@@ -405,7 +406,7 @@ def _cells(
     return found
 
 
-def _bent_drives(path: Path, cells: Cells) -> dict[str, Number]:
+def _drive_bends(path: Path, cells: Cells) -> dict[str, Number]:
     """Values of the drives over a cell, as `events.bent_drives` has them of arrays."""
     place = variable(PARAMETER)
     if not path.by_time:
@@ -438,7 +439,7 @@ def _curves(
     kinematics: Kinematics, guards: tuple[tuple[str, int], ...]
 ) -> dict[tuple[str, int], tuple[Node, Node, Node]]:
     """Value and two derivatives of each guard at a place."""
-    policy = _Traced(NODE_JETS)
+    policy = _TracingPolicy(NODE_JETS)
     kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), 2), policy)
     return {guard: _derivatives(number) for guard, number in _of_guards(policy, guards).items()}
 
@@ -453,7 +454,7 @@ def _bounds(
     kinematics: Kinematics, guards: tuple[tuple[str, int], ...]
 ) -> dict[tuple[str, int], tuple[Node, Node]]:
     """Value of each guard at a place with the bound of its rounding error."""
-    policy = _Traced(NODE_ROUNDED)
+    policy = _TracingPolicy(NODE_ROUNDED)
     kinematics.positions(NODE_ROUNDED, Rounded.of(variable(PARAMETER)), policy)
     rounded = {guard: Rounded.of(number) for guard, number in _of_guards(policy, guards).items()}
     return {guard: (as_node(x.value), as_node(x.bound)) for guard, x in rounded.items()}

@@ -64,7 +64,7 @@ def _cam(
     way = 1.0 if cam.forward else -1.0
     turning = float(drive.turning or 0.0)
     sample = int(np.argmax(np.isfinite(motion["position"].values).all(axis=(1, 2))))
-    hung, foot, angle = _hung(mechanism, motion.isel(sample=sample), drive, points, links)
+    hung, foot, angle = _axis_and_follower(mechanism, motion.isel(sample=sample), drive, points, links)
     if isinstance(cam.body.guide, Oscillating) and math.isfinite(cam.body.touch.roller) and hung["arm"]:
         # a flat face touches where it likes: its cam fits any arm
         hung["arm"]["length"] = cam.body.guide.arm
@@ -72,19 +72,21 @@ def _cam(
     roller = cam.roller(sample)
     lines = [np.array(line) for line in cam.lines(sample)]
     return {
-        "outline": _short(still.outline(0) - cam.hub, size),
-        "mark": _short(still.mark(0) - cam.hub, size),
+        "outline": _round_to_size(still.outline(0) - cam.hub, size),
+        "mark": _round_to_size(still.mark(0) - cam.hub, size),
         "turned": [way * drive.cam_angle, way * turning],
         "axis": (cam.hub - hung.pop("base")).tolist(),
         "start": {"path": f"drives.{drive.id}.start", "at": drive.start or 0.0},
-        "lines": [_short(_rotated(line - foot, -angle), size) for line in lines],
-        "roller": None if roller is None else _short(_rotated(roller[0][None] - foot, -angle), size)[0],
+        "lines": [_round_to_size(_rotate(line - foot, -angle), size) for line in lines],
+        "roller": None
+        if roller is None
+        else _round_to_size(_rotate(roller[0][None] - foot, -angle), size)[0],
         "radius": 0.0 if roller is None else roller[1],
         **hung,
     }
 
 
-def _hung(
+def _axis_and_follower(
     mechanism: Mechanism,
     motion: xarray.Dataset,
     drive: Drive,
@@ -134,11 +136,11 @@ def _paths(mechanism: Mechanism, name: str, point: str) -> dict[str, str]:
     return {axis: f"links.{name}.points.{point}.{axis}" for axis in "xy"}
 
 
-def _rotated(places: Array, angle: float) -> Array:
+def _rotate(places: Array, angle: float) -> Array:
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.asarray(places @ np.array([[cosine, sine], [-sine, cosine]]))
 
 
-def _short(places: Array, size: float) -> list[list[float]]:
+def _round_to_size(places: Array, size: float) -> list[list[float]]:
     decimals = DIGITS - math.floor(math.log10(size))
     return [[float(x) for x in row] for row in np.round(places, decimals)]

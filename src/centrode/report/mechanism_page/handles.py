@@ -59,17 +59,17 @@ def _ways(
 ) -> Iterator[dict[str, Any]]:
     """How each part that has the point follows: a place in the frame, a length, a place in a link, a line."""
 
-    def known(path: str) -> str | None:
+    def varied_path(path: str) -> str | None:
         return path if path in paths else None
 
     axes = ("longitude", "latitude") if mechanism.space == "sphere" else ("x", "y")
     if point in mechanism.frame.points:
-        x, y = (known(f"frame.points.{point}.{axis}") for axis in axes)
+        x, y = (varied_path(f"frame.points.{point}.{axis}") for axis in axes)
         if x or y:
             yield {"kind": "frame", "x": x, "y": y}
         return
     for guide in _rails(mechanism, point):
-        x, y = (known(f"guides.{guide.id}.through.{axis}") for axis in axes)
+        x, y = (varied_path(f"guides.{guide.id}.through.{axis}") for axis in axes)
         if x or y:
             yield {"kind": "guide", "x": x, "y": y, "direction": guide.direction_angle}
     driven = {drive.link for drive in mechanism.drives}

@@ -81,7 +81,7 @@ addEventListener("keydown", (event) => {
 new ResizeObserver(() => stage.widen(find(".moving .paper").clientWidth)).observe(find(".moving .paper"));
 
 // On paper stand the dimensions as they are now.
-const printed = () => {
+const printDimensions = () => {
   const cells = model.parameters.map((one, k) => {
     const unit = model.unit(one);
     return [element("td", {}, page.names[one.path] ?? one.path),
@@ -91,5 +91,5 @@ const printed = () => {
   find(".printed tbody").replaceChildren(...rows);
   find(".printed .place").textContent = model.place(within(Math.round(stage.place), 0, model.last));
 };
-addEventListener("beforeprint", printed);
+addEventListener("beforeprint", printDimensions);
 follow();

@@ -148,33 +148,31 @@ def _page(mechanism: Mechanism, program: PageProgram, data: Mapping[str, Any]) -
 def _body(title: str, program: PageProgram) -> str:
     """The elements of the page; scripts fill what is empty."""
     dimensions = _dimensions() if program.parameters else ""
-    curves = _curves(_missing(program))
+    curves = _curves(_reasons_for_omission(program))
     return (
         f'<div class="live"><header><h1>{title}</h1><p class="subtitle">{_subtitle()}</p></header>\n<main>\n'
-        f"{_player(_controls(program))}\n{dimensions}\n{curves}\n{_away()}\n</main>\n</div>\n{_by_hand()}\n"
+        f"{_player(_controls(program))}\n{dimensions}\n{curves}\n{_exports()}\n</main>\n</div>\n{_by_hand()}\n"
     )
 
 
 def _subtitle() -> str:
-    return _escaped(
-        _("This page computes the motion itself; made by centrode {version}"), version=__version__
-    )
+    return _escape(_("This page computes the motion itself; made by centrode {version}"), version=__version__)
 
 
 def _player(controls: str) -> str:
     """The mechanism, what is said of its motion, and on paper the table of its dimensions."""
-    name = _escaped(_("Player"))
-    label = _escaped(_("Mechanism in motion; drag a link, or use the arrow keys"))
-    without = _escaped(
+    name = _escape(_("Player"))
+    label = _escape(_("Mechanism in motion; drag a link, or use the arrow keys"))
+    without = _escape(
         _("This page computes the motion by its own script; the browser does not run scripts here.")
     )
-    hint = _escaped(
+    hint = _escape(
         _(
             "Drag a ring to change the dimensions, a link to move the mechanism. By keyboard: Tab reaches every ring, "
             "arrow keys move it, with Shift ten times as far; Space plays."
         )
     )
-    table = _escaped(_("Dimensions"))
+    table = _escape(_("Dimensions"))
     return (
         f'<section class="stage" aria-label="{name}"><div class="moving" role="group" aria-label="{label}">'
         f'<div class="paper" tabindex="0" role="group" aria-label="{label}"><noscript>{without}</noscript></div>'
@@ -194,7 +192,7 @@ def _dimensions() -> str:
     )
 
 
-def _missing(program: PageProgram) -> list[str]:
+def _reasons_for_omission(program: PageProgram) -> list[str]:
     """Why reduced masses and loads, or reactions, are not among the curves."""
     sentences = {
         "reduction_missing": _("Curves of reduced masses and loads are omitted: {reason}."),
@@ -206,7 +204,7 @@ def _missing(program: PageProgram) -> list[str]:
 
 def _curves(missing: Sequence[str]) -> str:
     """The curves; `missing` says why masses and loads are not among them."""
-    note = "".join(f'<p class="hint">{_escaped(why)}</p>' for why in missing)
+    note = "".join(f'<p class="hint">{_escape(why)}</p>' for why in missing)
     name, add = _("Curves"), _button("add-curve", _("Add a curve"))
     return (
         f'<section class="curves" aria-labelledby="h-curves">{_heading("curves", name)}'
@@ -214,9 +212,9 @@ def _curves(missing: Sequence[str]) -> str:
     )
 
 
-def _away() -> str:
+def _exports() -> str:
     """What a reader takes along: the link, the table, the numbers."""
-    name, numbers = _("Numbers and link"), _escaped(_("Numbers at the cursor"))
+    name, numbers = _("Numbers and link"), _escape(_("Numbers at the cursor"))
     link, table = _button("copy-link", _("Copy the link")), _button("csv", _("Copy as CSV"))
     return (
         f'<section class="away" aria-labelledby="h-away">{_heading("away", name)}'
@@ -234,17 +232,17 @@ def _by_hand() -> str:
         _("Close"),
     )
     return (
-        f'<dialog id="by-hand" aria-label="{_escaped(name)}"><form method="dialog"><label>{_escaped(why)}'
-        f'<textarea rows="6" readonly></textarea></label><button>{_escaped(close)}</button></form></dialog>'
+        f'<dialog id="by-hand" aria-label="{_escape(name)}"><form method="dialog"><label>{_escape(why)}'
+        f'<textarea rows="6" readonly></textarea></label><button>{_escape(close)}</button></form></dialog>'
     )
 
 
 def _button(name: str, text: str) -> str:
-    return f'<button type="button" data-do="{name}">{_escaped(text)}</button>'
+    return f'<button type="button" data-do="{name}">{_escape(text)}</button>'
 
 
 def _heading(name: str, text: str) -> str:
-    return f'<h2 id="h-{name}">{_escaped(text)}</h2>'
+    return f'<h2 id="h-{name}">{_escape(text)}</h2>'
 
 
 def _controls(program: PageProgram) -> str:
@@ -252,9 +250,9 @@ def _controls(program: PageProgram) -> str:
 
     def box(name: str, text: str, on: bool = False) -> str:
         checked = " checked" if on else ""
-        return f'<label><input type="checkbox" data-show="{name}"{checked}> {_escaped(text)}</label>'
+        return f'<label><input type="checkbox" data-show="{name}"{checked}> {_escape(text)}</label>'
 
-    of_link = _escaped(_("of link"))
+    of_link = _escape(_("of link"))
     links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
     body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
     centrodes = box("rolling-centrodes", _("both centrodes"))
@@ -269,7 +267,7 @@ def _controls(program: PageProgram) -> str:
         + f'<span class="pair">{centrodes}{reactions}{body}</span>'
         + box("ghosts", _("ghost positions"))
         + _button("fit", _("Fit"))
-        + (_turns() if program.mechanism.space == "sphere" else "")
+        + (_turn_buttons() if program.mechanism.space == "sphere" else "")
     )
 
 
@@ -288,7 +286,7 @@ def _floating(program: PageProgram) -> str:
     return next(iter(free), "")
 
 
-def _turns() -> str:
+def _turn_buttons() -> str:
     """Buttons that turn the sphere, as dragging it does."""
     names = {
         "left": ("\u2190", _("Turn the sphere to the left")),
@@ -298,12 +296,12 @@ def _turns() -> str:
     }
     made = (
         f'<button type="button" data-turn="{way}" aria-label="{name}" title="{name}">{sign}</button>'
-        for way, (sign, name) in ((way, (sign, _escaped(name))) for way, (sign, name) in names.items())
+        for way, (sign, name) in ((way, (sign, _escape(name))) for way, (sign, name) in names.items())
     )
     return f'<span class="turns">{"".join(made)}</span>'
 
 
-def _escaped(sentence: str, **holes: str) -> str:
+def _escape(sentence: str, **holes: str) -> str:
     return html.escape(sentence.format(**holes) if holes else sentence)
 
 

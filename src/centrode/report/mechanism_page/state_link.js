@@ -5,8 +5,8 @@ const sumOf = (told) => {
   for (let k = 0; k < told.length; k += 1) sum = Math.imul(sum ^ told.charCodeAt(k), 0x01000193) >>> 0;
   return sum.toString(36);
 };
-const packed = (told) => btoa(String.fromCharCode(...new TextEncoder().encode(told))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-const unpacked = (text) => new TextDecoder("utf-8", { fatal: true }).decode(
+const encode = (told) => btoa(String.fromCharCode(...new TextEncoder().encode(told))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+const decode = (text) => new TextDecoder("utf-8", { fatal: true }).decode(
   Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0)));
 
 // Three rows of three numbers, square to each other and as long as 1: how the sphere is turned.
@@ -34,7 +34,7 @@ class StateLink {
       r: Math.log2(stage.speed), w: stage.data.view ? stage.space.view : undefined,
       k: stage.body ? stage.body.value : undefined,
     };
-    const told = packed(JSON.stringify(state));
+    const told = encode(JSON.stringify(state));
     return `${this.digest}.${told}.${sumOf(this.digest + told)}`;
   }
 
@@ -45,7 +45,7 @@ class StateLink {
     if (parts[0] !== this.digest) return words.foreign;
     let state;
     try {
-      state = JSON.parse(unpacked(parts[1]));
+      state = JSON.parse(decode(parts[1]));
     } catch {
       return words.damaged;
     }

@@ -28,8 +28,8 @@ def words_of_page() -> dict[str, object]:
         "limits_at": _("Limits: {places}."),
         "misfit_status": _("{status}, closure residual up to {worst}, above its bound of {bound}"),
         "misfit": _(
-            "In red: a constraint that repeats others does not fit these dimensions. This command names it, and how far "
-            "it is off:"
+            "In red: a constraint that repeats others does not fit these dimensions. "
+            "This command names it, and how far it is off:"
         ),
         "cam_arm": _("The cam is not drawn: it is made for an arm of {length}, and the arm is {arm} long."),
         "all_reached": _("The mechanism reaches every position."),
