@@ -15,11 +15,26 @@ from centrode.cams.cam import cam as course_of
 from centrode.cams.followers.base_circle import has_profile
 from centrode.cams.results import cam_profile
 from centrode.errors import CentrodeError
-from centrode.locale import _
+from centrode.locale import _, mark
 from centrode.model.follower_cam import PlateCam
 from centrode.model.units import number_and_unit
 
 SAMPLES = 361
+FIELDS = {
+    "base_radius": mark("base radius"),
+    "speed": mark("speed"),
+    "thickness": mark("thickness of the cam"),
+    "roller_radius": mark("radius of the roller"),
+    "offset": mark("offset of the follower"),
+    "arm": mark("arm of the follower"),
+    "pivot_distance": mark("distance of the pivots"),
+    "face_offset": mark("offset of the face"),
+    "mass": mark("mass"),
+    "inertia": mark("moment of inertia"),
+    "load": mark("load"),
+    "friction": mark("coefficient of friction"),
+}
+"""Numbers of the cam and its follower, as the editor names them."""
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
@@ -114,7 +129,7 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
         yield {
             "of": owner,
             "path": f"{path}.{key}",
-            "name": key.replace("_", " "),
+            "name": _(FIELDS[key]) if key in FIELDS else key.replace("_", " "),
             "value": number,
             "unit": found[1],
             "shown": field_text(number),

@@ -161,7 +161,6 @@ export interface TopicOption {
   least?: number;
   most?: number;
   value?: string | number | boolean | null;
-  hint?: string;
   of?: string | null; // kind of the objects that it names
 }
 export interface Topic {

@@ -58,5 +58,5 @@ export const sentences = (...texts: (string | null | undefined)[]): string => te
 
 // What a terminal spells with the signs of a keyboard, with those of print.
 export const typeset = (text: string): string =>
-  text.replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
+  text.replace(/ -> /g, " → ").replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
     .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");
