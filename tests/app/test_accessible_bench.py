@@ -18,9 +18,9 @@ MECHANISM, CAM, SPHERE = "six-bar-press", "indexing-cam", "spherical-four-bar"
 WIDTHS = (400, 1000, 1920)
 OTHERS = {
     "five-bar-two-drives": ("region",),
-    "single-cylinder-engine": ("simulate",),
-    "cam-from-curvature": ("cam", "roller-path", "path-routes", "cam-profile"),
-    "walking-wheel-four-legs": ("walking-wheel", "cam-contact", "cam-choice"),
+    "five-bar-pendulum": ("simulate",),
+    "cam-from-curvature": ("roller-path", "path-routes"),
+    "walking-wheel-four-legs": ("cam", "cam-profile", "walking-wheel", "cam-contact", "cam-choice"),
 }
 """Descriptions with panels that the three do not have."""
 AUDIT = """async ([include, rules]) => {

@@ -11,8 +11,8 @@ from centrode.model.examples import example_text
 
 EXAMPLES = {
     "region": "five-bar-two-drives",
-    "simulate": "single-cylinder-engine",
-    "cam-profile": "cam-from-curvature",
+    "simulate": "five-bar-pendulum",
+    "cam-profile": "walking-wheel-four-legs",
     "roller-path": "cam-from-curvature",
     "path-routes": "cam-from-curvature",
     "walking-wheel": "walking-wheel-four-legs",

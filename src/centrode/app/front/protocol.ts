@@ -99,6 +99,7 @@ export interface CamScene {
   roller?: number | null;
   displacement: { missing?: string; repair?: string; unit?: string; angle?: number[]; lift?: (number | null)[]; velocity?: (number | null)[]; acceleration?: (number | null)[] } | null;
   segments: Segment[];
+  open?: boolean; // whether the path of the roller does not return
   missing?: string;
   repair?: string;
 }
