@@ -43,7 +43,7 @@ export const tickText = (value: number, step: number): string => {
 
 export const units = signal<Record<string, string>>({}); // as the reader's language spells them
 export const unitText = (unit?: string | null): string =>
-  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part).replaceAll(" ", "·").replace(/\^(\d)/g, (_whole, power: string) => RAISED[power]!));
+  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part).replace(/[ *]/g, "·").replace(/\^(\d)/g, (_whole, power: string) => RAISED[power]!));
 export const withUnit = (text: string, unit?: string | null): string => {
   const label = unitText(unit);
   return label ? `${text}${label === "°" ? "" : "\u00a0"}${label}` : text;
