@@ -15,7 +15,14 @@ from .bench import Bench, bench
 from .served import Served, served
 
 MECHANISM, CAM, SPHERE = "six-bar-press", "indexing-cam", "spherical-four-bar"
-WIDTHS = (400, 1000, 2000)
+WIDTHS = (400, 1000, 1920)
+OTHERS = {
+    "five-bar-two-drives": ("region",),
+    "five-bar-pendulum": ("simulate",),
+    "cam-from-curvature": ("roller-path", "path-routes"),
+    "walking-wheel-four-legs": ("cam", "cam-profile", "walking-wheel", "cam-contact", "cam-choice"),
+}
+"""Descriptions with panels that the three do not have."""
 AUDIT = """async ([include, rules]) => {
   const where = {include: [include], exclude: [[".paper svg > *"]]}; // pictures are one thing each
   const how = {resultTypes: ["violations"], ...(rules.length ? {runOnly: rules} : {})};
@@ -70,6 +77,33 @@ def test_nothing_serious_is_found_on_any_panel(running: Any, server: Served, nam
         one.page.emulate_media(color_scheme="dark")
         assert serious_findings(one, "html", "color-contrast") == []
         assert one.messages == []
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_nothing_serious_is_found_on_panels_of_few_descriptions(
+    running: Any, server: Served, name: str
+) -> None:
+    with bench(running, server.address) as one:
+        one.page.evaluate(AXE.read_text("utf-8"))
+        one.template(name)
+        one.motion()
+        for topic in OTHERS[name]:
+            one.page.click(f"#tab-{topic}")
+            one.until(lambda: one.page.get_attribute("#panel", "data-ready") == "true")
+            assert one.page.locator("#panel .missing").count() == 0, topic
+            assert serious_findings(one, "#panel") == [], topic
+        one.page.emulate_media(color_scheme="dark")
+        assert serious_findings(one, "html", "color-contrast") == []
+        assert one.messages == []
+
+
+def test_nothing_serious_is_found_on_the_sphere_that_is_drawn_on(running: Any, server: Served) -> None:
+    with bench(running, server.address) as one:
+        one.page.evaluate(AXE.read_text("utf-8"))
+        one.gesture(lambda: one.page.click('[data-do="sphere"]'))
+        assert serious_findings(one) == []
+        one.draw((0.42, 0.62), (0.45, 0.5))
+        assert serious_findings(one) == []
 
 
 def test_nothing_serious_is_found_in_any_window(running: Any, server: Served) -> None:

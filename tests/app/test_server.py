@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import random
+import re
 import time
 
 import pytest
@@ -354,3 +355,22 @@ def test_a_page_gets_the_token_by_a_code_and_says_what_to_do_without_one(client,
     bare = client.get("/", headers={"Accept-Language": "ru"})
     assert bare.status_code == 200 and settings.token not in bare.text and "centrode app" in bare.text
     assert client.get("/", headers={"Host": "evil.example:8123"}).status_code == 403
+
+
+@pytest.mark.parametrize("topic", ["reduce", "centres", "polygons", "rotatability"])
+def test_numbers_of_panels_have_the_mark_of_the_language_and_names_stay(ask, topic):
+    """A name that looks like a number is the user's: it keeps its point."""
+    operation = {"do": "rename", "object": "slider", "name": "No 1.5"}
+    text = ask("edit", text=example_text("six-bar-press"), operations=[operation])["text"]
+    said = []
+    for language in ("en", "uk"):
+        blocks = ask("panel", text=text, topic=topic, language=language, samples=37)["blocks"]
+        words = [block for block in blocks if block["kind"] in ("facts", "paragraph", "table", "heading")]
+        said.append(json.dumps(words, ensure_ascii=False))
+    english, ukrainian = said
+    assert "No 1.5" in english and "No 1.5" in ukrainian
+    printed = re.sub(
+        r"(?<=[\[, ])-?\d+\.\d+(?=[\],])", "", ukrainian.replace("No 1.5", "")
+    )  # JSON's own numbers
+    assert re.search(r"\d,\d", printed) and not re.search(r"\d\.\d", printed)
+    assert re.search(r"\d\.\d", english.replace("No 1.5", ""))

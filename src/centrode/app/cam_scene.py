@@ -15,11 +15,30 @@ from centrode.cams.cam import cam as course_of
 from centrode.cams.followers.base_circle import has_profile
 from centrode.cams.results import cam_profile
 from centrode.errors import CentrodeError
-from centrode.locale import _
+from centrode.locale import _, mark
+from centrode.model.cam import Cam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.units import number_and_unit
 
 SAMPLES = 361
+FIELDS = {
+    "base_radius": mark("base radius"),
+    "radius": mark("radius"),
+    "pressure_angle": mark("pressure angle"),
+    "to": mark("to"),
+    "speed": mark("speed"),
+    "thickness": mark("thickness of the cam"),
+    "roller_radius": mark("radius of the roller"),
+    "offset": mark("offset of the follower"),
+    "arm": mark("arm of the follower"),
+    "pivot_distance": mark("distance of the pivots"),
+    "face_offset": mark("offset of the face"),
+    "mass": mark("mass"),
+    "inertia": mark("moment of inertia"),
+    "load": mark("load"),
+    "friction": mark("coefficient of friction"),
+}
+"""Numbers of the cam and its follower, as the editor names them."""
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
@@ -56,7 +75,9 @@ def _cam(document: Document) -> dict[str, Any]:
             return found
         profile = cam_profile(cam, SAMPLES)
     except CentrodeError as failure:
-        return {**found, "missing": failure.what, "repair": failure.repair}
+        # the path of a roller is there without the roller
+        pitch = None if isinstance(cam, PlateCam) else _path_of_roller(cam)
+        return {**found, "pitch": pitch, "open": True, "missing": failure.what, "repair": failure.repair}
     found["profile"] = _places(profile["profile"].to_numpy())
     if "path" in profile:
         found["pitch"] = _places(profile["path"].to_numpy())
@@ -64,6 +85,13 @@ def _cam(document: Document) -> dict[str, Any]:
         value = profile.attrs.get(name)
         found[key] = float(value) if value is not None and np.isfinite(value) else None
     return found
+
+
+def _path_of_roller(cam: Cam) -> list[list[float]] | None:
+    try:
+        return _places(course_of(cam, SAMPLES)["roller_centre"].to_numpy())
+    except CentrodeError:
+        return None
 
 
 def _places(places: Any) -> list[list[float]]:
@@ -95,7 +123,7 @@ def _finite(value: float) -> float | None:
 
 def _dimensions(document: Document) -> Iterator[dict[str, Any]]:
     """Numbers of the body, the follower and the segments, as the text has them."""
-    for room in ("cam", "follower"):
+    for room in ("cam", "follower", "curvature", "start", "range", "roller"):
         table = document.tables.get(room)
         if isinstance(table, Mapping):
             yield from _numbers(room, table, room)
@@ -114,7 +142,7 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
         yield {
             "of": owner,
             "path": f"{path}.{key}",
-            "name": key.replace("_", " "),
+            "name": _(FIELDS[key]) if key in FIELDS else key.replace("_", " "),
             "value": number,
             "unit": found[1],
             "shown": field_text(number),

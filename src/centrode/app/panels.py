@@ -69,8 +69,7 @@ def _options(topic: Topic) -> Iterator[dict[str, Any]]:
                 value = words[0] if has_default else None
                 yield {
                     "name": name,
-                    "label": _label(name),
-                    "hint": _(help_text),
+                    "label": _label(help_text),
                     "kind": "choice",
                     "choices": choices,
                     "value": value,
@@ -78,8 +77,7 @@ def _options(topic: Topic) -> Iterator[dict[str, Any]]:
             case FlagOption(name, help_text):
                 yield {
                     "name": name,
-                    "label": _label(name),
-                    "hint": _(help_text),
+                    "label": _label(help_text),
                     "kind": "flag",
                     "value": False,
                 }
@@ -87,8 +85,7 @@ def _options(topic: Topic) -> Iterator[dict[str, Any]]:
                 kind = "text" if option.kind is str else "number"
                 yield {
                     "name": option.name,
-                    "label": _label(option.name),
-                    "hint": _(option.help),
+                    "label": _label(option.help),
                     "kind": kind,
                     "value": None,
                     "required": option.required,
@@ -97,15 +94,15 @@ def _options(topic: Topic) -> Iterator[dict[str, Any]]:
             case InstantsOption(help_text):
                 yield {
                     "name": "at",
-                    "label": _label("at"),
-                    "hint": _(help_text),
+                    "label": _label(help_text),
                     "kind": "text",
                     "value": None,
                 }
 
 
-def _label(name: str) -> str:
-    return name.replace("_", " ")
+def _label(sentence: str) -> str:
+    """What an option means, in the reader's language: names of options are those of the command."""
+    return _(sentence).rstrip(".")
 
 
 def topics_of(document: Document) -> dict[str, bool | str]:
@@ -171,7 +168,11 @@ def topic_sheet(document: Document, topic: Topic, options: object, samples: obje
     arguments = _arguments(topic, description, options, samples)
     command = topic.command
     if command is not None and command.needs is not None:
-        command.needs(description, **{key: arguments[key] for key in arguments if key != "samples"})
+        # of a cam it is the description alone that may lack something
+        given = (
+            {} if topic.subject == "cam" else {key: arguments[key] for key in arguments if key != "samples"}
+        )
+        command.needs(description, **given)
     return sheet_with_parts(topic, topic.compute(description, **arguments)), description
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from centrode import render
@@ -11,6 +10,7 @@ from centrode.app.sketch import Sketch
 from centrode.errors import CentrodeError
 from centrode.kinematics.check import check_of
 from centrode.locale import _
+from centrode.sheets.texts import Number
 from centrode.structure.constraints import constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import dimensions_of
 from centrode.views import structure
@@ -43,7 +43,7 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
     answer["mobility"] = checked.mobility
     answer["loose"] = []
     answer["facts"] = [
-        {"label": render.plain_text(fact.label, display), "text": render.plain_text(fact.value, display)}
+        {"label": render.screen_text(fact.label, display), "text": render.screen_text(fact.value, display)}
         for fact in structure.facts(checked)
     ]
     answer["limit"] = _limit(sketch)
@@ -105,9 +105,10 @@ def _limit(sketch: Sketch) -> str | None:
     drive = prepared.mechanism.drives[0].id
     low, high = float(way.places[0]), float(way.places[-1])
     if prepared.kinematics.path.turns:
-        ends = (f"{math.degrees(low):.4g}°", f"{math.degrees(high):.4g}°")
+        ends = (Number(low, "rad", ".4g"), Number(high, "rad", ".4g"))
     else:
-        ends = (f"{low:.4g} m", f"{high:.4g} m")
+        ends = (Number(low, "m", ".4g"), Number(high, "m", ".4g"))
+    low_text, high_text = (render.screen_text(end, prepared.mechanism.display) for end in ends)
     return _("the drive {drive} moves from {low} to {high} only").format(
-        drive=drive, low=ends[0], high=ends[1]
+        drive=drive, low=low_text, high=high_text
     )

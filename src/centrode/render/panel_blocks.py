@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode import render
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
-from centrode.render.spelling import PrintSpelling
+from centrode.render.spelling import ScreenSpelling
 from centrode.render.terminal import symbol_texts
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import CurveDiagram, Plot, TraceKind
@@ -28,7 +28,7 @@ from centrode.sheets.sheet import (
     SymbolList,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Number
+from centrode.sheets.texts import NOTHING, Number, Text
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
@@ -79,12 +79,17 @@ def panel_blocks(
     return blocks
 
 
+def screen_text(text: Text, display: Display) -> str:
+    """A text as a page shows it."""
+    return ScreenSpelling(display).text(text)
+
+
 class _Writer:
     """Writes parts of a sheet as blocks."""
 
     def __init__(self, display: Display, mathematics: Mathematics | None) -> None:
         self.display, self.mathematics = display, mathematics
-        self.spelling = PrintSpelling(display)
+        self.spelling = ScreenSpelling(display)
         self.formulas: list[tuple[JSON, Formula]] = []
 
     def set_formulas(self) -> None:

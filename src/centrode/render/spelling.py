@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
-from centrode.locale import _, ngettext
+from centrode.locale import _, decimal_mark, ngettext
 from centrode.model.settings import shown_as
 from centrode.quantities import spelled_unit, terminal_unit, typeset_unit, with_unit
 from centrode.render.drawing.texts import formula, plain
@@ -52,6 +52,9 @@ class Spelling(ABC):
         Units of lengths and angles; SI where None.
     """
 
+    decimal = "."
+    """What stands before the decimals of a number; spellings that take the language's mark say so."""
+
     def __init__(self, display: Display | None) -> None:
         self.display = display
 
@@ -89,7 +92,7 @@ class Spelling(ABC):
             case Part(part):
                 return self.part(self.text(part))
             case VectorNotation():
-                return self.vectors(filled_notation(text))
+                return self.vectors(filled_notation(text, self.decimal))
             case _:
                 assert_never(text)
 
@@ -146,9 +149,12 @@ class Spelling(ABC):
         """A formula in the letters of equations."""
 
 
-def filled_notation(relation: VectorNotation) -> str:
+def filled_notation(relation: VectorNotation, decimal: str = ".") -> str:
     """The notation of a relation with its numbers."""
-    numbers = {name: format(number.value, number.digits) for name, number in relation.values.items()}
+    numbers = {
+        name: format(number.value, number.digits).replace(".", decimal)
+        for name, number in relation.values.items()
+    }
     return relation.notation.format(**numbers) if numbers else relation.notation
 
 
@@ -169,7 +175,7 @@ class PlainSpelling(Spelling):
         digits = self._digits(number.value * factor if factor != 1.0 else number.value, number.digits)
         text = digits if number.unit_hidden else with_unit(digits, self.label_of(unit))
         if number.degrees_too and unit == "rad":
-            return f"{text} ({with_unit(f'{math.degrees(number.value):.6g}', self.label_of('deg'))})"
+            return f"{text} ({with_unit(self._digits(math.degrees(number.value), ''), self.label_of('deg'))})"
         return text
 
     def label_of(self, unit: str) -> str:
@@ -238,6 +244,24 @@ class PrintSpelling(PlainSpelling):
     def unit(self, unit: str) -> str:
         """A unit as books print it."""
         return spelled_unit(unit)
+
+
+class ScreenSpelling(PrintSpelling):
+    """As on paper, with the decimal mark of the language; a semicolon parts coordinates where that is a comma."""
+
+    def __init__(self, display: Display | None) -> None:
+        super().__init__(display)
+        self.decimal = decimal_mark()
+
+    def _digits(self, value: float, digits: str) -> str:
+        return super()._digits(value, digits).replace(".", self.decimal)
+
+    def place(self, coordinates: Sequence[Number], unit: str) -> str:
+        """A place as "(1.25, 0) m" or "(1,25; 0) m"."""
+        if self.decimal == ".":
+            return super().place(coordinates, unit)
+        label = self.label_of(shown_as(unit, self.display)[1])
+        return f"({'; '.join(map(self.number, coordinates))}) {label}".rstrip()
 
 
 class DrawingSpelling(PrintSpelling):

@@ -35,7 +35,7 @@ function TopBar() {
           <button type="button" class="icon-button" data-do="undo" disabled={!steps.value.undo} aria-label={say("undo")} title={say("undo")} onClick={undo}><Icon name="undo" /></button>
           <button type="button" class="icon-button" data-do="redo" disabled={!steps.value.redo} aria-label={say("redo")} title={say("redo")} onClick={redo}><Icon name="redo" /></button>
         </span>
-        <button type="button" data-do="text" aria-pressed={editing.value} onClick={() => { editing.value = !editing.value; }}>{say("text")}{problems.value.length ? <span class="count">{problems.value.length}</span> : null}</button>
+        <button type="button" data-do="text" aria-pressed={editing.value} onClick={() => { editing.value = !editing.value; }}>{say("text")}{problems.value.length && (scene.value?.points.length || scene.value?.kind === "cam") ? <span class="count">{problems.value.length}</span> : null}</button>
         <select class="language" aria-label={say("language")} value={language.value} onChange={(event) => speak(event.currentTarget.value)}>
           {(hello.value?.languages ?? []).map((one) => <option value={one.code} lang={one.code}>{one.name}</option>)}
         </select>

@@ -46,8 +46,8 @@ function picture(cam: CamScene, at: number, wide: number, high: number, title: s
   const turn = first + share * ((angles[low + 1] ?? first) - first), middle = [(wide * U) / 2, (high * U) / 2];
   const path = (curve: Place[]): string => curve.map(([x, y], k) => `${k ? "L" : "M"}${digits(x! * scale)} ${digits(-y! * scale)}`).join("");
   const turned = make("g", { transform: `translate(${digits(middle[0]!)} ${digits(middle[1]!)}) rotate(${((-turn * 180) / Math.PI).toFixed(2)})` }, svg);
-  make("path", { class: "cam-body hue-0", d: `${path(cam.profile)}Z` }, turned);
-  if (cam.pitch?.length) make("path", { class: "pitch", d: `${path(cam.pitch)}Z` }, turned);
+  if (cam.profile.length) make("path", { class: "cam-body hue-0", d: `${path(cam.profile)}Z` }, turned);
+  if (cam.pitch?.length) make("path", { class: "pitch", d: `${path(cam.pitch)}${cam.open ? "" : "Z"}` }, turned);
   if (cam.base) {
     make("circle", { class: "base", r: digits(cam.base * scale) }, turned);
     make("path", { class: "spoke", d: `M0 0L${digits(0.5 * cam.base * scale)} 0` }, turned);

@@ -78,7 +78,7 @@ function BlockView({ block }: { block: Block }) {
     case "paragraph":
       return <p class={block.item ? "item" : ""}>{typeset(sentence(block.text))}</p>;
     case "formula":
-      return block.mathml ? <Markup className="formula" text={block.mathml} /> : <pre class="formula" tabindex={0} role="region" aria-label={say("formula")}>{block.text}</pre>;
+      return block.mathml ? <Markup className="formula" text={block.mathml} /> : <pre class="formula" tabindex={0} role="region" aria-label={say("formula")}>{typeset(block.text ?? "")}</pre>;
     case "picture":
       return (
         <figure>
@@ -133,11 +133,11 @@ function Options({ of, name }: { of: TopicOption[]; name: string }) {
     <div class="options">
       {of.map((option) => {
         const value = now[option.name] ?? option.value ?? "";
-        const label = option.label, hint = option.hint;
-        if (option.kind === "flag") return <label class="choice" title={hint}><input type="checkbox" checked={Boolean(value)} onChange={(event) => put(option, event.currentTarget.checked)} /> {label}</label>;
+        const label = option.label;
+        if (option.kind === "flag") return <label class="choice"><input type="checkbox" checked={Boolean(value)} onChange={(event) => put(option, event.currentTarget.checked)} /> {label}</label>;
         const choices = option.of === "link" ? (scene.value?.links ?? []).map((one) => ({ value: one.name, label: one.name })) : option.kind === "choice" ? option.choices ?? [] : null;
         if (choices) return (
-          <label title={hint}><span>{label}</span>
+          <label><span>{label}</span>
             <select value={String(value)} onChange={(event) => put(option, event.currentTarget.value || null)}>
               {(option.value === null || option.value === undefined) && <option value="">—</option>}
               {choices.map((choice) => <option value={choice.value}>{choice.label}</option>)}
@@ -150,7 +150,7 @@ function Options({ of, name }: { of: TopicOption[]; name: string }) {
             <output>{spelled(Number(value), 4)}</output>
           </label>
         );
-        return <label title={hint}><span>{label}</span><input type="text" value={String(value)} onChange={(event) => put(option, event.currentTarget.value.trim() || null)} /></label>;
+        return <label><span>{label}</span><input type="text" value={String(value)} onChange={(event) => put(option, event.currentTarget.value.trim() || null)} /></label>;
       })}
     </div>
   );

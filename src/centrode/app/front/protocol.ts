@@ -99,6 +99,7 @@ export interface CamScene {
   roller?: number | null;
   displacement: { missing?: string; repair?: string; unit?: string; angle?: number[]; lift?: (number | null)[]; velocity?: (number | null)[]; acceleration?: (number | null)[] } | null;
   segments: Segment[];
+  open?: boolean; // whether the path of the roller does not return
   missing?: string;
   repair?: string;
 }
@@ -161,7 +162,6 @@ export interface TopicOption {
   least?: number;
   most?: number;
   value?: string | number | boolean | null;
-  hint?: string;
   of?: string | null; // kind of the objects that it names
 }
 export interface Topic {

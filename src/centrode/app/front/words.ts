@@ -43,7 +43,7 @@ export const tickText = (value: number, step: number): string => {
 
 export const units = signal<Record<string, string>>({}); // as the reader's language spells them
 export const unitText = (unit?: string | null): string =>
-  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part).replaceAll(" ", "·").replace(/\^(\d)/g, (_whole, power: string) => RAISED[power]!));
+  !unit || unit === "1" ? "" : unit === "deg" ? "°" : (units.value[unit] ?? unit.replace(/[A-Za-z]+/g, (part) => units.value[part] ?? part).replace(/[ *]/g, "·").replace(/\^(\d)/g, (_whole, power: string) => RAISED[power]!));
 export const withUnit = (text: string, unit?: string | null): string => {
   const label = unitText(unit);
   return label ? `${text}${label === "°" ? "" : "\u00a0"}${label}` : text;
@@ -58,5 +58,5 @@ export const sentences = (...texts: (string | null | undefined)[]): string => te
 
 // What a terminal spells with the signs of a keyboard, with those of print.
 export const typeset = (text: string): string =>
-  text.replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
+  text.replace(/ -> /g, " → ").replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
     .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");

@@ -1,0 +1,49 @@
+"""Panels: every topic of the registry has one that opens, in every language, and what it lacks is said."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from centrode.app.panels import shown_topics
+from centrode.model.examples import example_text
+
+EXAMPLES = {
+    "region": "five-bar-two-drives",
+    "simulate": "five-bar-pendulum",
+    "cam-profile": "walking-wheel-four-legs",
+    "roller-path": "cam-from-curvature",
+    "path-routes": "cam-from-curvature",
+    "walking-wheel": "walking-wheel-four-legs",
+    "cam-contact": "walking-wheel-four-legs",
+    "cam-choice": "walking-wheel-four-legs",
+}
+"""Topic -> a built-in description that it concerns, where that is none of the usual ones."""
+USUAL = {"mechanism": "six-bar-press", "cam": "indexing-cam"}
+WORDS = ("base radius", "pivot distance", "roller radius")
+
+
+@pytest.mark.parametrize("topic", shown_topics(), ids=lambda topic: topic.name)
+def test_every_panel_opens(ask, topic):
+    """It has something to show, or a reason in words: never a fault of the program."""
+    text = example_text(EXAMPLES.get(topic.name, USUAL[topic.subject]))
+    scene = ask("read", text=text)["scene"]
+    panel = ask("panel", text=text, topic=topic.name, samples=37, language="uk")
+    said = json.dumps(panel, ensure_ascii=False)
+    assert "error" not in panel, said
+    if scene["topics"].get(topic.name) is True:
+        assert panel.get("blocks") or panel.get("missing"), said
+    else:
+        assert panel["missing"]
+
+
+def test_options_and_fields_are_named_in_the_language(ask):
+    english, ukrainian = (
+        {one["name"]: one for one in ask("hello", language=code)["topics"]} for code in ("en", "uk")
+    )
+    for name, topic in english.items():
+        for option, other in zip(topic["options"], ukrainian[name]["options"], strict=True):
+            assert option["name"] == other["name"] and option["label"] != other["label"]
+    fields = ask("read", text=example_text("indexing-cam"), language="uk")["scene"]["dimensions"]
+    assert not {field["name"] for field in fields if field["of"] in ("cam", "follower")} & set(WORDS)
