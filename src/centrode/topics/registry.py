@@ -1132,6 +1132,7 @@ SENSITIVITY = Topic(
     result=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
     restore=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
     view=Lazily("centrode.views.sensitivity", "sheet"),
+    subject="mechanisms",
 )
 
 CAM_SENSITIVITY = Topic(
@@ -1149,6 +1150,7 @@ ALLOCATION = Topic(
     compute=Lazily("centrode.tolerances.allocation", "allocate_tolerances"),
     result=Lazily("centrode.tolerances.allocation", "Allocation"),
     view=Lazily("centrode.views.allocation", "sheet"),
+    subject="mechanisms",
 )
 
 TOPICS: tuple[Topic, ...] = (
