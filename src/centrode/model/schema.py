@@ -466,7 +466,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
     },
     Clearance: {"play": above_zero("length"), "length": above_zero("length")},
     Correlation: {
-        "paths": list_of(NAME, 2, MOST_PATHS),
+        "paths": list_of(TEXT, 2, MOST_PATHS),
         "value": {"type": "number", "minimum": -1, "maximum": 1},
     },
     ToleranceOutput: {

@@ -359,7 +359,7 @@ def _graded(mechanism: Mechanism, paths: Sequence[str], problem: _Programme) -> 
         halves = np.array([0.5 * standard_tolerance(size, grade) for size in sizes])
         if float(problem.total(halves).max()) <= 1.0:
             return halves
-    raise InputError("bounds", _("not even grade IT1 keeps the bounds"), _('use kind="cost"'))
+    raise InputError("bounds", _("not even grade IT1 satisfies the bounds"), _('use kind="cost"'))
 
 
 def _rounded(mechanism: Mechanism, paths: Sequence[str], halves: Array) -> tuple[Array, tuple[int, ...]]:

@@ -115,6 +115,7 @@ def cam_sensitivity(
         "title": plate.title,
         "cam": cam_text(plate),
         "version": __version__,
+        "outputs": "\n".join(names),
     }
     return xr.Dataset(variables, coords, attrs=attributes)
 

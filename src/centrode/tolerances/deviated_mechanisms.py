@@ -144,7 +144,7 @@ class DeviatedMechanisms:
         if self.has_reactions:
             return self._one_by_one(values)
         # the tail of a normal distribution may hold lengths that no link has
-        impossible = (values[:, self.lengths] <= 0.0).any(axis=1)
+        impossible = np.asarray((values[:, self.lengths] <= 0.0).any(axis=1))
         if impossible.any():
             values = np.where(impossible[:, None], self.limits.values, values)
         found = sweep(

@@ -204,13 +204,15 @@ def tolerances(
         count - moving,
         first_stop(mechanisms, stopped),
     )
+    settings = mechanism.tolerances
+    described_units = {} if settings is None else {name: one.unit for name, one in settings.outputs.items()}
     play = play_of(mechanism)
     clearances = clearance_extents(prepared, texts, play, samples) if play else {}
     found = tuple(
         OutputAccuracy(
             name,
             text,
-            mechanisms.units[name],
+            described_units.get(name) or mechanisms.units[name],
             mechanisms.of_samples[name],
             mechanisms.nominal[name],
             mechanisms.gradients[name],

@@ -159,6 +159,8 @@ def sensitivity(
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,
+        # a file keeps no order of its variables
+        "outputs": "\n".join(texts),
     }
     return xr.Dataset(variables, coords, attrs=attributes)
 

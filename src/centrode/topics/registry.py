@@ -1134,6 +1134,7 @@ SENSITIVITY = Topic(
     result=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
     restore=Lazily("centrode.tolerances.sensitivity", "SensitivityResults"),
     view=Lazily("centrode.views.sensitivity", "sheet"),
+    subject="mechanisms",
 )
 
 CAM_SENSITIVITY = Topic(
@@ -1142,6 +1143,7 @@ CAM_SENSITIVITY = Topic(
     result=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     restore=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     view=Lazily("centrode.views.sensitivity", "cam_sheet"),
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
     subject="cam",
 )
 
@@ -1150,6 +1152,7 @@ ALLOCATION = Topic(
     compute=Lazily("centrode.tolerances.allocation", "allocate_tolerances"),
     result=Lazily("centrode.tolerances.allocation", "Allocation"),
     view=Lazily("centrode.views.allocation", "sheet"),
+    subject="mechanisms",
 )
 
 SYNTHESIS = Topic(

@@ -46,8 +46,8 @@ def cam_sheet(results: CamSensitivityResults) -> Sheet:
 def _gradients(data: xarray.Dataset) -> list[tuple[str, Array]]:
     """Name and derivatives of each single number of the outputs, (..., path)."""
     found: list[tuple[str, Array]] = []
-    names = [str(name) for name in data.data_vars if str(name).startswith(GRADIENT)]
-    for output, values in ((name.removeprefix(GRADIENT), data[name]) for name in names):
+    for output in str(data.attrs["outputs"]).split("\n"):
+        values = data[f"{GRADIENT}{output}"]
         dims = [dim for dim in values.dims if dim not in ("sample", "path")]
         if not dims:
             found.append((output, values.to_numpy()))

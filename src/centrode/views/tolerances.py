@@ -416,7 +416,8 @@ def _histograms(results: ToleranceResults, single: list[OutputAccuracy]) -> Hist
         ends = (output.true.lower, output.true.upper)
         levels += [(TRUE, float(output.nominal + one)) for one in ends]
         label = AxisLabel(Name(output.name), unit=output.unit)
-        panels.append(HistogramPanel(label, output.drawn.bins, output.drawn.counts, tuple(levels)))
+        counts = output.drawn.counts.astype(np.float64)
+        panels.append(HistogramPanel(label, output.drawn.bins, counts, tuple(levels)))
     return Histograms(
         Sentence("Drawn mechanisms"),
         Title(results.mechanism.title),
