@@ -46,7 +46,7 @@ def test_tables_drawings_and_outlines(centrode: Centrode, folder: Path) -> None:
     outlines = {f"{name}.{kind}" for name in ("pinion", "wheel") for kind in ("svg", "dxf")}
     tables = {"wheels.csv", "line-of-action.csv", "blocking-contour.csv", "summary.json"}
     assert {path.name for path in (folder / "pair").iterdir()} == pictures | outlines | tables
-    assert "contact ratio              1.2021" in done.out
+    assert "contact ratio                 1.2021" in done.out
     with (folder / "pair" / "wheels.csv").open(encoding="utf-8", newline="") as file:
         rows = {row["quantity"]: row for row in csv.DictReader(file)}
     assert float(rows["tip diameter"]["pinion"]) == pytest.approx(44.8397e-3, abs=5e-8)
@@ -77,7 +77,7 @@ def test_other_commands_say_which_one_computes_a_pair(centrode: Centrode, comman
 def test_a_linkage_is_no_pair(centrode: Centrode) -> None:
     done = centrode("gears", "crank-rocker")
     assert done.code == 2
-    assert "this describes no pair of gears" in done.err
+    assert "this describes a linkage, not a pair of gears" in done.err
 
 
 def test_the_schema_of_pairs(centrode: Centrode) -> None:

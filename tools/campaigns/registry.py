@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.gaps import cases as gaps
+from tools.campaigns.gears import cases as gears
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -29,5 +30,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         commands.CAMPAIGN,
         clusters.CAMPAIGN,
         pages.CAMPAIGN,
+        gears.CAMPAIGN,
     )
 }

@@ -21,7 +21,7 @@ from centrode.model.links import part_tables
 from centrode.model.load_paths import ROOMS, kind_of_place, place_of_number, with_number
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
-from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
+from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
 from centrode.model.values import BareAngles, Radians
 
 AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
@@ -90,12 +90,7 @@ def mechanism_from(
     bare_angles: BareAngles = "radians",
 ) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    if mapping.get("kind") == "gear pair":
-        repair = _("compute it with: centrode gears; in Python with gear_pair")
-        raise InputError(where, _("this describes a pair of gears, not a linkage"), repair)
-    if is_cam(mapping):
-        repair = _("compute it with: centrode cam; in Python read it with read_cam")
-        raise InputError(where, _("this describes a cam, not a linkage"), repair)
+    refuse_other_kind(mapping, "linkage", where)
     return parse_tables(Mechanism, mapping, where, folder, bare_angles)
 
 

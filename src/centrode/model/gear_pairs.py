@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 import tomli_w
 from pydantic import PlainValidator, model_validator
 
-from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import whole
 from centrode.model.files import in_short_lines
@@ -26,7 +25,7 @@ from centrode.model.reading import (
     value_text,
 )
 from centrode.model.settings import Display
-from centrode.model.toml import bare_angles_of, parse_tables, toml_tables, with_unit
+from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
 from centrode.model.values import (
     BareAngles,
     Flag,
@@ -232,11 +231,6 @@ class GearPair(DescriptionPart):
         return self
 
 
-def is_gear_pair(mapping: Mapping[str, Any]) -> bool:
-    """Whether a description says that it is that of a pair of wheels."""
-    return mapping.get("kind") == KIND
-
-
 def read_gear_pair(path: str | Path) -> GearPair:
     """The pair described in a TOML file; raises InputError that says where it is wrong."""
     path = Path(path)
@@ -256,9 +250,7 @@ def gear_pair_from(
     bare_angles: BareAngles = "radians",
 ) -> GearPair:
     """The pair described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    if not is_gear_pair(mapping) and ("links" in mapping or mapping.get("kind") == "cam"):
-        what = _("this describes no pair of gears")
-        raise InputError(where, what, _('a pair has kind = "gear pair", module and teeth'))
+    refuse_other_kind(mapping, KIND, where)
     return parse_tables(GearPair, mapping, where, folder, bare_angles)
 
 

@@ -15,7 +15,7 @@ from centrode.model.follower_cam import PlateCam
 from centrode.model.gear_pairs import GearPair, parse_gear_pair, read_gear_pair
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import likely, read_file, value_text
-from centrode.model.toml import is_cam, toml_tables
+from centrode.model.toml import description_kind, toml_tables
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
@@ -94,15 +94,10 @@ def load_gear_pair(file_or_example: str | Path) -> GearPair:
 def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
     path = _file(file_or_example)
-    if path is None:
-        found = example(str(file_or_example))
-        if isinstance(found, GearPair):
-            repair = _("compute it with: centrode gears; in Python with gear_pair")
-            raise InputError(str(file_or_example), _("this describes a pair of gears, not a linkage"), repair)
-        return found
-    text = read_file(path)
-    reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
-    return reads(text, path.name, path.parent)
+    name = path.name if path else f"{file_or_example}.toml"
+    text = read_file(path) if path else example_text(str(file_or_example))
+    reads = parse_cam if description_kind(toml_tables(text, name)) == "cam" else parse_mechanism
+    return reads(text, name, path.parent if path else None)
 
 
 def mechanism_of(source: MechanismSource) -> Mechanism:
