@@ -35,6 +35,7 @@ from centrode.cli.schema import schema
 from centrode.cli.sheets import sheets
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
+from centrode.cli.trains import trains
 from centrode.cli.translation import language_option, translate_command, wished_language, with_language
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
@@ -54,6 +55,7 @@ OWN: tuple[click.Command, ...] = (
     variants,
     cam,
     gears,
+    trains,
     sweep,
     draw,
     sheets,

@@ -134,6 +134,11 @@ KINDS: Mapping[str, KindOfDescription] = {
         mark("not a pair of gears"),
         mark("compute it with: centrode gears; in Python with gear_pair"),
     ),
+    "gear train": KindOfDescription(
+        mark("this describes a train of gears"),
+        mark("not a train of gears"),
+        mark("compute it with: centrode trains; in Python with gear_train"),
+    ),
 }
 """Kinds of descriptions; that of a linkage names none."""
 

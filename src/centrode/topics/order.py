@@ -31,6 +31,7 @@ COMMANDS = (
     "balance",
     "cam",
     "gears",
+    "trains",
     "centres",
     "centrodes",
     "diagrams",

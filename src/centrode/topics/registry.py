@@ -1090,6 +1090,14 @@ GEAR_PAIR = Topic(
     subject="gear pair",
 )
 
+GEAR_TRAIN = Topic(
+    name="gear-train",
+    compute=Lazily("centrode.gears.train_results", "gear_train"),
+    result=Lazily("centrode.gears.train_results", "GearTrainResults"),
+    view=Lazily("centrode.views.gear_train", "sheet"),
+    subject="gear train",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1106,6 +1114,7 @@ TOPICS: tuple[Topic, ...] = (
     FOLLOWER_MOTION,
     MOTION_LAWS,
     GEAR_PAIR,
+    GEAR_TRAIN,
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,

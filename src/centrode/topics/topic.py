@@ -249,7 +249,8 @@ class Topic:
     command : None where only documents and Python have the topic
     document : its chapters
     subject : "mechanism"; "cam": those have one command together, with the options of all of them; "gear pair";
-        "mechanisms": many of one structure, whose commands read a file of their own and go on with what is in a folder
+        "gear train"; "mechanisms": many of one structure, whose commands read a file of their own and go on with what
+        is in a folder
     flag : option of that command without which it leaves the topic out
     restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
         computation has no dataset that says everything
@@ -266,7 +267,7 @@ class Topic:
     concerns: Lazily | None = None
     command: Command | None = None
     document: InDocuments = InDocuments()
-    subject: Literal["mechanism", "cam", "gear pair", "mechanisms"] = "mechanism"
+    subject: Literal["mechanism", "cam", "gear pair", "gear train", "mechanisms"] = "mechanism"
     flag: str = ""
     restore: Lazily | None = None
     value: Lazily | None = None

@@ -62,7 +62,7 @@ def run(seed: int, number: int) -> Outcome:
         outcome.count("clear")
         outcome.hold(pair.kind, "depth", depth, SEEN)
     begin, end = true_action_ends(pair)
-    if end < begin and "contact ratio" not in kinds:
+    if end < begin and not {"contact ratio", "contact after undercut"} & set(kinds):
         outcome.fault("no contact, and the program says nothing")
     return outcome
 
