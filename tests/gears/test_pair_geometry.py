@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from centrode.gears.involutes import involute, involute_curve, pressure_angle_of
+from centrode.gears.involutes import involute_curve
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.geometry.involute import involute, pressure_angle_of
 
 DEGREE = math.pi / 180
 RANDOM = np.random.default_rng(33)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from centrode.gears.involutes import involute, pressure_angle_of
 from centrode.gears.pair_geometry import GearWheel
+from centrode.geometry.involute import involute, pressure_angle_of
 
 PIN = 1.7
 """Diameter of a pin in modules where none is chosen: it touches the flanks near the middle of a tooth's height."""

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from centrode.gears.involutes import Array, involute, pressure_angle_of
+from centrode.gears.involutes import Array
 from centrode.gears.racks import (
     STANDARD_RACK,
     ReferenceRack,
@@ -23,6 +23,7 @@ from centrode.gears.racks import (
     least_teeth,
     transverse_rack,
 )
+from centrode.geometry.involute import involute, pressure_angle_of
 
 UNBOUNDED = 1e9
 """Specific sliding beyond which contact lies at the base circle to rounding."""

@@ -10,13 +10,14 @@ import numpy as np
 
 from centrode.errors import MotionError
 from centrode.gears.blocking_contour import BlockingContour, blocking_contour
-from centrode.gears.involutes import Array, involute
+from centrode.gears.involutes import Array
 from centrode.gears.measurements import WheelMeasurements, wheel_measurements
 from centrode.gears.pair_faults import PairFault, pair_faults
 from centrode.gears.pair_geometry import PairGeometry, PairKind
 from centrode.gears.profiles import ToothProfile, tooth_profile, true_contact_ratio
 from centrode.gears.racks import ReferenceRack
 from centrode.gears.shift_choice import chosen_shifts
+from centrode.geometry.involute import involute
 from centrode.locale import _
 from centrode.model.examples.catalogue import GearPairSource, gear_pair_of
 from centrode.model.gear_pairs import RACK, GearPair

@@ -15,8 +15,8 @@ from centrode.gears.blocking_contour import (
     sliding_difference,
     with_shifts,
 )
-from centrode.gears.involutes import involute
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.geometry.involute import involute
 from centrode.locale import _, mark
 
 _NO_SHIFTS = mark("no shifts of these wheels keep contact ratio, tips and flanks within their bounds")

@@ -175,7 +175,7 @@ def _machine_with_train(results: GearTrainResults, mechanism: Mechanism) -> Mech
 def _crank_of(mechanism: Mechanism, tables: dict[str, Any]) -> tuple[dict[str, Any], str, str]:
     """The drive, the link that it turns, and the point of the frame about which it does."""
     drives = tables.get("drives", [])
-    link = drives[0].get("link") if len(drives) == 1 else None
+    link = str(drives[0].get("link")) if len(drives) == 1 else ""
     if (
         link in mechanism.links
         and isinstance(drives[0].get("speed"), float)

@@ -67,12 +67,12 @@ from centrode.model.gear_trains import (
     MeshLosses,
 )
 from centrode.model.gear_trains import MOST_TEETH as MOST_IN_TRAIN
+from centrode.model.gears import Gear
 from centrode.model.links import (
     MASSES,
     RING_AND_POINT,
     SHAPES,
     Frame,
-    Gear,
     Guide,
     Link,
     PartMass,
@@ -262,7 +262,13 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "pole": _THROUGH,
         "radius": above_zero("arc"),
     },
-    Gear: {"links": _NAMES, "ratio": quantity_schema("ratio"), "carrier": NAME, "name": NAME},
+    Gear: {
+        "links": _NAMES,
+        "ratio": quantity_schema("ratio"),
+        "carrier": NAME,
+        "pair": {"anyOf": [NAME, {"type": "object"}]},
+        "name": NAME,
+    },
     Track: {
         "through": _COORDINATES,
         "direction": _DIRECTION,
