@@ -41,7 +41,9 @@ def test_tables_drawings_and_outlines(centrode: Centrode, folder: Path) -> None:
     done = centrode("gears", "shifted-gear-pair", "--out", "pair")
     assert done.code == 0, done
     pictures = {
-        f"{name}.{kind}" for name in ("mesh", "sliding", "blocking-contour") for kind in ("png", "svg")
+        f"{name}.{kind}"
+        for name in ("mesh", "generation", "sliding", "blocking-contour")
+        for kind in ("png", "svg")
     }
     outlines = {f"{name}.{kind}" for name in ("pinion", "wheel") for kind in ("svg", "dxf")}
     tables = {"wheels.csv", "line-of-action.csv", "blocking-contour.csv", "summary.json"}
@@ -84,3 +86,10 @@ def test_the_schema_of_pairs(centrode: Centrode) -> None:
     schema = json.loads(centrode("schema", "--gears").out)
     assert schema["properties"]["kind"]["const"] == "gear pair"
     assert centrode("schema", "--gears", "--cam").code == 2
+
+
+def test_a_pair_on_its_sheet(centrode: Centrode, folder: Path) -> None:
+    done = centrode("sheets", "shifted-gear-pair", "--format", "dxf", "--out", "sheet")
+    assert done.code == 0, done
+    assert (folder / "sheet" / "sheet-1.dxf").stat().st_size > 10_000
+    assert centrode("sheets", "shifted-gear-pair", "--at", "1", "--out", "more").code == 2

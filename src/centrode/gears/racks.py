@@ -9,6 +9,9 @@ import numpy as np
 
 from centrode.gears.involutes import Array
 
+EDGE = 13
+"""Places of the rounded edge of a rack's tooth."""
+
 
 @dataclass(frozen=True)
 class ReferenceRack:
@@ -102,6 +105,27 @@ def least_teeth(rack: ReferenceRack, shift: float = 0.0, helix_angle: float = 0.
     """The number of teeth z_min below which the rack undercuts: 2 (h_a* - x) cos(beta)/sin^2(alpha_t)."""
     angle = math.atan(math.tan(rack.pressure_angle) / math.cos(helix_angle))
     return 2 * (rack.straight - shift) * math.cos(helix_angle) / math.sin(angle) ** 2
+
+
+def rack_tooth(rack: TransverseRack, shift: float) -> Array:
+    """Outline (n, 2) of a tooth of the generating rack [m] about the y axis, the wheel's pitch line at y = 0."""
+    alpha, radius = rack.pressure_angle, rack.fillet
+    half, slope = math.pi * rack.module / 4, math.tan(alpha)
+    centre = complex(
+        half - rack.dedendum * slope - radius * (1 / math.cos(alpha) - slope), shift - rack.dedendum + radius
+    )
+    edge = centre + radius * np.exp(1j * np.linspace(-math.pi / 2, -alpha, EDGE))
+    top = complex(half + rack.addendum * slope, shift + rack.addendum)
+    right = np.append(edge, top)
+    outline = np.concatenate([-np.conj(right[::-1]), right])
+    return np.stack([outline.real, outline.imag], axis=-1)
+
+
+def rack_positions(outline: Array, pitch_radius: float, rolled: Array) -> Array:
+    """Outlines (k, n, 2) of a rack in the frame of the wheel, after rolling by angles (k) [rad]."""
+    places = outline[:, 0] + 1j * (pitch_radius + outline[:, 1])
+    turned = (places[None, :] + pitch_radius * rolled[:, None]) * np.exp(1j * rolled)[:, None]
+    return np.stack([turned.real, turned.imag], axis=-1)
 
 
 def fillet_curve(

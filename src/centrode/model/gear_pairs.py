@@ -71,6 +71,9 @@ def _tooth_number(value: object) -> int:
 def read_shifts(value: object) -> tuple[float, float] | Purpose:
     """Two shift coefficients, or what they are to be chosen for."""
     if isinstance(value, str):
+        if value == "standard":
+            what = _("the recommended shifts of GOST 16532 are not in this program")
+            raise Problem(what, _("give [x1, x2] from the standard, or another purpose"))
         if value not in PURPOSES:
             what = _("{value} is no purpose of shifts").format(value=value_text(value))
             raise Problem(what, nearest(value, list(PURPOSES)))

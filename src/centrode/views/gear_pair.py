@@ -10,6 +10,7 @@ import numpy as np
 
 from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
 from centrode.gears.profiles import whole_tooth
+from centrode.gears.racks import rack_positions, rack_tooth
 from centrode.locale import mark
 from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing, OutlineSet
@@ -100,6 +101,7 @@ def sheet(results: GearPairResults) -> Sheet:
             {
                 "mesh": lambda: _mesh(results),
                 "sliding": lambda: _sliding(results),
+                "generation": lambda: _generation(results),
                 **({"blocking-contour": lambda: _contour(results)} if contour else {}),
             }
         ),
@@ -388,23 +390,19 @@ def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
     return OutlineSet(Title(results.gear_pair.title), tuple(pieces))
 
 
-def _mesh(results: GearPairResults) -> OutlineDrawing:
-    """The teeth about the pitch point, with the circles and the line of action."""
+def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array], Array]:
+    """Teeth about the pitch point, arcs of the working pitch circles, and both ends of the active line of action."""
     pair = results.geometry
     pieces: list[OutlinePiece] = []
-    centres = [(0.0, 0.0)]
-    reach: list[float] = []
-    radius = pair.wheels[0].working_pitch / 2
+    circles: list[Array] = []
     for number, profile in enumerate(results.profiles):
         step = 2 * math.pi / profile.teeth
-        centre, half, turn = (0.0, 0.0), 0.0, 0.0
+        centre, half, turn, up = (0.0, 0.0), 0.0, 0.0, 1
         if number:
             # A gap of the wheel takes the pinion's tooth: below its centre where it is external, above where internal.
             centre = (0.0, pair.sign * pair.centre_distance)
-            half, turn = step / 2, math.pi if pair.sign > 0 else 0.0
-            centres.append(centre)
+            half, turn, up = step / 2, math.pi if pair.sign > 0 else 0.0, -pair.sign
         shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
-        reach.append((shown + 0.5) * step)
         # The gap of the wheel lies in the middle: as many teeth on either side.
         for tooth in range(-shown, shown + 1 - number):
             angle = turn + half + tooth * step
@@ -412,28 +410,66 @@ def _mesh(results: GearPairResults) -> OutlineDrawing:
                 piece.on_layer(("profile", "shoe")[number]).moved(angle, centre)
                 for piece in whole_tooth(profile)
             ]
-    shapes = []
-    if pair.kind == "rack":
-        shapes.append(DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (_rack_line(pair),)))
-    else:
-        circles = [
-            _arc(centre, wheel.working_pitch / 2, up, half)
-            for centre, wheel, up, half in zip(centres, pair.wheels, (1, -pair.sign), reach, strict=True)
-        ]
-        shapes.append(DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles)))
+        circles.append(_arc(centre, pair.wheels[number].working_pitch / 2, up, (shown + 0.5) * step))
     begin, end = pair.action_ends
     middle, angle = pair.pitch_curvature_radius, pair.working_angle
     # The contact moves with the driven flank: along the inner tangent of both base circles through the pitch point.
     direction = np.array([-math.cos(angle), math.sin(angle)])
-    ends = np.array([[0.0, radius]]) + np.outer(np.array([max(begin, 0.0), end]) - middle, direction)
-    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (ends,)))
-    layers = {"profile": PINION, "shoe": WHEEL} if pair.kind != "rack" else {"profile": PINION}
+    pitch = np.array([[0.0, pair.wheels[0].working_pitch / 2]])
+    return pieces, circles, pitch + np.outer(np.array([max(begin, 0.0), end]) - middle, direction)
+
+
+def _mesh(results: GearPairResults) -> OutlineDrawing:
+    """The teeth about the pitch point, with the circles and the line of action."""
+    pair = results.geometry
+    pieces, circles, action = mesh_parts(results)
+    if pair.kind == "rack":
+        shapes = [DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (rack_line(pair),))]
+    else:
+        shapes = [DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles))]
+    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (action,)))
     return OutlineDrawing(
         Sentence("Teeth in mesh"),
         Title(results.gear_pair.title),
         tuple(pieces),
-        layers,
+        {"profile": PINION, "shoe": WHEEL} if pair.kind != "rack" else {"profile": PINION},
         tuple(shapes),
+        Sentence("axis of the pinion"),
+    )
+
+
+ROLLED = 0.75
+"""Positions of the rack reach this share of a turn of two teeth to either side."""
+POSITIONS = 17
+
+
+def generation_parts(results: GearPairResults) -> tuple[list[OutlinePiece], tuple[Array, ...]]:
+    """Teeth of the pinion beside a gap on the y axis, and the positions of the rack's tooth that cuts the gap."""
+    pair, profile = results.geometry, results.profiles[0]
+    wheel, step = pair.wheels[0], 2 * math.pi / profile.teeth
+    teeth = [
+        piece.on_layer("profile").moved(side * step / 2) for side in (-1, 1) for piece in whole_tooth(profile)
+    ]
+    # The rack meets the tips where it has rolled by about the angle of a tooth and a half.
+    rolled = np.linspace(-1.0, 1.0, POSITIONS) * ROLLED * 2 * step
+    outline = rack_tooth(pair.transverse, wheel.shift * pair.module)
+    return teeth, tuple(rack_positions(outline, wheel.pitch / 2, rolled))
+
+
+def _generation(results: GearPairResults) -> OutlineDrawing:
+    """How the rack generates a gap of the pinion: its positions as it rolls. Undercut is where they cross a flank."""
+    teeth, positions = generation_parts(results)
+    pitch = results.geometry.wheels[0].pitch / 2
+    circle = _arc((0.0, 0.0), pitch, 1, 2 * math.pi / results.profiles[0].teeth)
+    return OutlineDrawing(
+        Sentence("Generation by the rack"),
+        Title(results.gear_pair.title),
+        tuple(teeth),
+        {"profile": PINION},
+        (
+            DrawnLines(LineUse.NORMAL, Sentence("positions of the rack"), positions),
+            DrawnLines(LineUse.AXIS, Sentence("pitch circle"), (circle,)),
+        ),
         Sentence("axis of the pinion"),
     )
 
@@ -444,7 +480,7 @@ def _arc(centre: tuple[float, float], radius: float, up: int, half: float) -> Ar
     return np.stack([centre[0] + radius * np.sin(angles), centre[1] + up * radius * np.cos(angles)], axis=-1)
 
 
-def _rack_line(pair: PairGeometry) -> Array:
+def rack_line(pair: PairGeometry) -> Array:
     """Teeth of the rack whose gap takes the pinion's tooth."""
     module, angle = pair.transverse.module, pair.transverse.pressure_angle
     line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module

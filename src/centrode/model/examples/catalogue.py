@@ -121,6 +121,16 @@ def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     return reads(text, name, path.parent if path else None)
 
 
+def load_drawn(file_or_example: str | Path) -> Mechanism | AnyCam | GearPair:
+    """What sheets are drawn of: a mechanism, a cam or a pair of gears in a file, or the built-in one of that name."""
+    path = _file(file_or_example)
+    name = path.name if path else f"{file_or_example}.toml"
+    text = read_file(path) if path else example_text(str(file_or_example))
+    if description_kind(toml_tables(text, name)) == "gear pair":
+        return parse_gear_pair(text, name, path.parent if path else None)
+    return load_either(file_or_example)
+
+
 def mechanism_of(source: MechanismSource) -> Mechanism:
     """The mechanism itself, or the one that `load` finds under a name; InputError for anything else."""
     source = load(source) if isinstance(source, str | Path) else source
