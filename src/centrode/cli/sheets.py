@@ -17,7 +17,7 @@ from centrode.locale import _, mark, ngettext
 FORMATS = ("pdf", "dxf")
 
 
-@click.command(help=mark("Draw a mechanism, a cam or gears on sheets A1 at standard scales."))
+@click.command(help=mark("Draw a mechanism, a cam or gears on sheets A1."))
 @click.argument(
     "mechanism",
     metavar=mark("FILE_OR_EXAMPLE"),
