@@ -32,7 +32,9 @@ from centrode.cli.main import main
 from centrode.dynamics.simulation.routes import moves_freely
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
-from centrode.model.gear_pairs import gear_pair_text, parse_gear_pair
+from centrode.model.gear_pair_files import gear_pair_text
+from centrode.model.gear_pairs import parse_gear_pair
+from centrode.model.gear_trains import gear_train_text, parse_gear_train
 from centrode.sweeps.sweep import read_sweep
 from samples import few
 
@@ -156,6 +158,11 @@ def read_toml(example: Example) -> None:
         pair = parse_gear_pair(text)
         assert parse_gear_pair(gear_pair_text(pair)) == pair
         ct.gear_pair(pair)
+        return
+    if tables.get("kind") == "gear train":
+        train = parse_gear_train(text)
+        assert parse_gear_train(gear_train_text(train)) == train
+        ct.gear_train(train)
         return
     if tables.get("kind") == "cam":
         cam = ct.parse_cam(text)

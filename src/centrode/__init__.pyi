@@ -12,6 +12,7 @@ from .model.simulation import Simulation as Simulation
 from .model.cam import Cam as Cam
 from .model.follower_cam import PlateCam as PlateCam
 from .model.gear_pairs import GearPair as GearPair
+from .model.gear_trains import GearTrain as GearTrain
 from .model.files import read_mechanism as read_mechanism
 from .model.files import parse_mechanism as parse_mechanism
 from .model.files import mechanism_text as mechanism_text
@@ -65,6 +66,8 @@ from .dynamics.balancing.balance import balance as balance
 
 # Gears
 from .gears.results import gear_pair as gear_pair
+from .gears.train_results import gear_train as gear_train
+from .gears.train_mechanisms import train_mechanism as train_mechanism
 
 # Cams
 from .cams.cam import cam as cam

@@ -381,6 +381,7 @@ FORCES = (
     Quantity("guide_moment", "M_g", "N m", mark("moment of the guide on its slider")),
     Quantity("gear_moment", "M_z", "N m", mark("moment of the mesh")),
     Quantity("tooth_force", "F_t", "N", mark("tangential force on the second wheel")),
+    Quantity("tooth_radial_force", "F_r", "N", mark("radial force on the second wheel")),
     Quantity("rolling_force", "R", "N", mark("force of the track on the wheel")),
     Quantity("rolling_normal", "R_n", "N", mark("normal force of the track")),
     Quantity("rolling_tangential", "R_t", "N", mark("tangential force of the track")),

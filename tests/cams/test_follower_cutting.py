@@ -109,7 +109,7 @@ def test_chords_keep_their_tolerance(name: str) -> None:
         for one in follower_outlines(cam, tolerance, 0.01):
             if one.layer != layer:
                 continue
-            middle = np.linspace(one.phi[:-1], one.phi[1:], 9)[1:-1].ravel()
+            middle = np.linspace(one.parameter[:-1], one.parameter[1:], 9)[1:-1].ravel()
             contact = cam.contact(middle)
             away = {"profile": 0.0, "path": cam.touch.roller, "cutter": 0.01}[layer]
             exact = (contact.place + away * contact.normal).reshape(7, -1, 2)
@@ -142,10 +142,10 @@ def test_pieces_meet_also_at_corners(contact: str, sense: float) -> None:
         gaps = np.hypot(*(ends[:, 0] - np.roll(ends[:, 1], 1, axis=0)).T)
         sharp = math.pi / 2  # the outward corner at 90 deg: sides of an undercut profile cross there
         for gap, one in zip(gaps, pieces, strict=True):
-            crossing = contact != "knife" and abs(one.phi[0] - sharp) < 1e-9
+            crossing = contact != "knife" and abs(one.parameter[0] - sharp) < 1e-9
             assert (gap > 1e-4) if crossing and layer == "profile" else gap < 1e-12 or crossing
         for one in pieces:  # slopes are those of the points
-            ahead = np.gradient(one.places, one.phi, axis=0)[2:-2]
+            ahead = np.gradient(one.places, one.parameter, axis=0)[2:-2]
             room = 0.02 * np.abs(one.slopes).max()
             np.testing.assert_allclose(one.slopes[2:-2], ahead, atol=room)
 
@@ -165,7 +165,7 @@ def test_a_knife_edge_leaves_corners() -> None:
     cam = FollowerCam(Lift(fall), translating_follower(0.04), Point(0.0), 0.04)
     (corner,) = cam.corners
     pieces = [one for one in follower_outlines(cam, 1e-6, 0.01) if one.layer == "cutter"]
-    (arc,) = [one for one in pieces if np.ptp(one.phi) == pytest.approx(corner.turn, rel=1e-12)]
+    (arc,) = [one for one in pieces if np.ptp(one.parameter) == pytest.approx(corner.turn, rel=1e-12)]
     place = cam.contact(np.array([math.pi / 2])).place
     np.testing.assert_allclose(np.hypot(*(arc.places - place).T), 0.01, rtol=1e-12)
     ends = np.array([[one.places[0], one.places[-1]] for one in pieces])

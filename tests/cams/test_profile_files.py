@@ -84,9 +84,9 @@ def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_p
         middles = (
             (ends + 3 * controls[:, 0] + 3 * controls[:, 1] + controls[:, 2]) / 8 * np.array([1.0, -1.0])
         )
-        phi = 0.5 * (piece.phi[1:] + piece.phi[:-1])
+        phi = 0.5 * (piece.parameter[1:] + piece.parameter[:-1])
         exact = 1e3 * body.profile(phi, side).place  # type: ignore[arg-type]
-        step = float(np.diff(piece.phi).max())
+        step = float(np.diff(piece.parameter).max())
         # a cubic by Hermite: h^4 / 384 of the fourth derivative, some twenty sizes here; seven digits are printed
         assert np.abs(middles - exact).max() < 20 * 90 * step**4 / 384 + 1e-7
 
@@ -107,8 +107,8 @@ def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct
         assert len(splines) == len(pieces)
         for piece, spline in zip(pieces, splines, strict=True):
             curve = spline.construction_tool()
-            phi = np.linspace(piece.phi[0], piece.phi[-1], 203)[1:-1]
-            found = np.array([list(curve.point(one))[:2] for one in phi - piece.phi[0]])
+            phi = np.linspace(piece.parameter[0], piece.parameter[-1], 203)[1:-1]
+            found = np.array([list(curve.point(one))[:2] for one in phi - piece.parameter[0]])
             exact = {
                 "path": lambda at: (
                     cam_body(cam).closed.radius(at)[0][:, None] * np.stack([np.sin(at), np.cos(at)], axis=-1)
@@ -117,12 +117,12 @@ def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct
             }.get(
                 layer, lambda at, name=layer: body.profile(at, "outer" if "groove" in name else "inner").place
             )(phi)
-            step = float(np.diff(piece.phi).max())
+            step = float(np.diff(piece.parameter).max())
             # a cubic spline: 5/384 h^4 of the fourth derivative, some twenty sizes here
             assert np.abs(found - 1e3 * exact).max() < 5 / 384 * step**4 * 20 * 90 + 1e-9
         lines = list(space.query(f'LWPOLYLINE[layer=="points-{layer}"]'))
         corners = np.concatenate([np.array(one.get_points("xy")) for one in lines])
-        assert len(corners) >= sum(len(one.phi) for one in pieces) - len(pieces)
+        assert len(corners) >= sum(len(one.parameter) for one in pieces) - len(pieces)
 
 
 def test_files_have_the_same_bytes_each_time(cam: ct.Cam, tmp_path: Path) -> None:
@@ -163,7 +163,9 @@ def test_at_corners_the_rollers_arc_joins_the_walls(k1: float) -> None:
     pieces = [one for one in outlines if one.layer.startswith(wall)]
     ends = np.array([[one.places[0], one.places[-1]] for one in pieces])
     np.testing.assert_allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=1e-15)
-    arcs = [one for one in pieces if np.ptp(one.phi) == pytest.approx(abs(body.kinks[0].kink), rel=1e-9)]
+    arcs = [
+        one for one in pieces if np.ptp(one.parameter) == pytest.approx(abs(body.kinks[0].kink), rel=1e-9)
+    ]
     assert len(arcs) == 4
     for arc, joint in zip(arcs, body.kinks, strict=True):
         corner = body.closed.radius(np.array([joint.at]))[0] * np.array(

@@ -41,12 +41,14 @@ def test_tables_drawings_and_outlines(centrode: Centrode, folder: Path) -> None:
     done = centrode("gears", "shifted-gear-pair", "--out", "pair")
     assert done.code == 0, done
     pictures = {
-        f"{name}.{kind}" for name in ("mesh", "sliding", "blocking-contour") for kind in ("png", "svg")
+        f"{name}.{kind}"
+        for name in ("mesh", "generation", "sliding", "blocking-contour")
+        for kind in ("png", "svg")
     }
     outlines = {f"{name}.{kind}" for name in ("pinion", "wheel") for kind in ("svg", "dxf")}
     tables = {"wheels.csv", "line-of-action.csv", "blocking-contour.csv", "summary.json"}
     assert {path.name for path in (folder / "pair").iterdir()} == pictures | outlines | tables
-    assert "contact ratio              1.2021" in done.out
+    assert "contact ratio                 1.2021" in done.out
     with (folder / "pair" / "wheels.csv").open(encoding="utf-8", newline="") as file:
         rows = {row["quantity"]: row for row in csv.DictReader(file)}
     assert float(rows["tip diameter"]["pinion"]) == pytest.approx(44.8397e-3, abs=5e-8)
@@ -77,10 +79,17 @@ def test_other_commands_say_which_one_computes_a_pair(centrode: Centrode, comman
 def test_a_linkage_is_no_pair(centrode: Centrode) -> None:
     done = centrode("gears", "crank-rocker")
     assert done.code == 2
-    assert "this describes no pair of gears" in done.err
+    assert "this describes a linkage, not a pair of gears" in done.err
 
 
 def test_the_schema_of_pairs(centrode: Centrode) -> None:
     schema = json.loads(centrode("schema", "--gears").out)
     assert schema["properties"]["kind"]["const"] == "gear pair"
     assert centrode("schema", "--gears", "--cam").code == 2
+
+
+def test_a_pair_on_its_sheet(centrode: Centrode, folder: Path) -> None:
+    done = centrode("sheets", "shifted-gear-pair", "--format", "dxf", "--out", "sheet")
+    assert done.code == 0, done
+    assert (folder / "sheet" / "sheet-1.dxf").stat().st_size > 10_000
+    assert centrode("sheets", "shifted-gear-pair", "--at", "1", "--out", "more").code == 2

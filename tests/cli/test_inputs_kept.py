@@ -23,6 +23,7 @@ FEW = ("--samples", "3", "--no-figures")
 EXAMPLES = {
     "cam": "valve-cam",
     "gears": "shifted-gear-pair",
+    "trains": "single-planet-train",
     "region": "five-bar-two-drives",
     "simulate": "six-bar-press-run-up",
 }
@@ -41,6 +42,7 @@ FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "balance": ("balance.csv", ("--no-figures", "--samples", "9")),
     "cam": ("summary.json", FEW),
     "gears": ("summary.json", ("--no-figures",)),
+    "trains": ("summary.json", ("--no-figures",)),
     "centres": ("centres.csv", ("--at", "1 rad", "--no-figures")),
     "centrodes": ("centrodes.csv", ("--link", "AB", *FEW)),
     "diagrams": ("check.csv", ("--at", "1 rad", "--no-figures")),

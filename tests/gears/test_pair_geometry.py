@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from centrode.gears.involutes import involute, involute_curve, pressure_angle_of
+from centrode.gears.involutes import involute_curve
 from centrode.gears.pair_geometry import PairGeometry
-from centrode.gears.profiles import half_base_angle
+from centrode.geometry.involute import involute, pressure_angle_of
 
 DEGREE = math.pi / 180
 RANDOM = np.random.default_rng(33)
@@ -113,7 +113,7 @@ def _flank(pair: PairGeometry, number: int, roll: float, turned: float) -> tuple
     pinion and a gap of the wheel lie on the line of centres.
     """
     wheel = pair.wheels[number]
-    half = half_base_angle(pair, number)
+    half = wheel.half_base_angle
     places, slopes = involute_curve(wheel.base / 2, np.array([roll]), half, -1 if wheel.internal else 1)
     place, slope = places[0], slopes[0]
     if number == 0:
@@ -154,7 +154,10 @@ def test_true_flanks_keep_the_ratio_over_the_line_of_action(pair: PairGeometry) 
     # The pinion turns by as much as the contact moves along the line of action over the base radius.
     rolls = np.linspace(begin + 0.02, end - 0.02, 9) / base
     # The flank passes the pitch point when half of the tooth has turned past the line of centres.
-    pitch_roll, half = math.tan(pair.working_angle), half_base_angle(pair, 0) - involute(pair.working_angle)
+    pitch_roll, half = (
+        math.tan(pair.working_angle),
+        pair.wheels[0].half_base_angle - involute(pair.working_angle),
+    )
     start = _contact(pair, 0.0)
     for roll in rolls:
         turned = half + pitch_roll - roll
@@ -181,7 +184,7 @@ def _roll_at_other_tip(pair: PairGeometry) -> float:
         return _contact(pair, float(turned[0]))[2][1] - tip
 
     begin = pair.action_ends[0] / (pair.wheels[0].base / 2)
-    half = half_base_angle(pair, 0) - involute(pair.working_angle)
+    half = pair.wheels[0].half_base_angle - involute(pair.working_angle)
     turned = float(root(gap, [half + math.tan(pair.working_angle) - begin - 0.01], tol=1e-13).x[0])
     return _contact(pair, turned)[2][0]
 

@@ -8,17 +8,16 @@ import math
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from scipy.optimize import brentq, minimize_scalar
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
 
-from centrode.gears.involutes import involute_curve
-from centrode.gears.measurements import measurements
-from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.measurements import base_tangent_length, span_over_teeth, wheel_measurements
+from centrode.gears.pair_geometry import GearWheel, PairGeometry
 from centrode.gears.profiles import (
-    half_base_angle,
     tooth_profile,
     true_contact_ratio,
-    turned_pieces,
     wheel_outline,
+    whole_tooth,
 )
 from centrode.gears.racks import fillet_curve
 from rack_envelope import fillet_place, flank_place
@@ -34,8 +33,8 @@ def _pair(teeth: int, shift: float) -> PairGeometry:
 def test_teeth_are_the_envelope_of_the_rack(teeth: int, shift: float) -> None:
     """Fillets and flanks to 1e-12 of the module."""
     pair = _pair(teeth, shift)
-    profile = tooth_profile(pair, 0)
-    pieces = {piece.kind: piece for piece in profile.pieces}
+    profile = tooth_profile(pair.wheels[0])
+    pieces = {piece.layer: piece for piece in profile.pieces}
     for normal, place in zip(pieces["fillet"].parameter, pieces["fillet"].places, strict=True):
         exact = fillet_place(float(normal), teeth, shift, pair.rack.fillet)
         assert np.hypot(float(exact[0] - mpf(place[0])), float(exact[1] - mpf(place[1]))) < 1e-12
@@ -60,10 +59,10 @@ def test_teeth_are_the_envelope_of_the_rack(teeth: int, shift: float) -> None:
 
 @pytest.mark.parametrize(("teeth", "shift"), SHAPES)
 def test_pieces_join_and_slopes_are_derivatives(teeth: int, shift: float) -> None:
-    profile = tooth_profile(_pair(teeth, shift), 0)
+    profile = tooth_profile(_pair(teeth, shift).wheels[0])
     for before, after in zip(profile.pieces, profile.pieces[1:], strict=False):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
-    whole = turned_pieces(profile, 0.3, (1.0, 2.0))
+    whole = [piece.moved(0.3, (1.0, 2.0)) for piece in whole_tooth(profile)]
     for before, after in itertools.pairwise(whole):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
     for piece in profile.pieces:
@@ -81,58 +80,94 @@ def test_pieces_join_and_slopes_are_derivatives(teeth: int, shift: float) -> Non
     assert math.pi * np.hypot(*root) ** 2 < area < math.pi * np.hypot(*tip) ** 2
 
 
-@pytest.mark.parametrize(
-    ("kind", "teeth", "shifts", "number"),
-    [
-        ("external", (12, 24), (0.6, 0.36), 0),
-        ("external", (12, 24), (0.6, 0.36), 1),
-        ("external", (25, 40), (-0.1, 0.2), 0),
-        ("internal", (20, 62), (0.3, 0.3), 1),
-        ("internal", (20, 63), (0.1, -0.2), 1),
-    ],
-)
-def test_measurements_are_those_of_true_teeth(kind, teeth, shifts, number) -> None:
-    """Span between parallel tangents and dimension over pins, found on the involutes themselves."""
-    pair = PairGeometry(kind, 3.0, teeth, shifts)
-    wheel, found = pair.wheels[number], measurements(pair, number)
-    base, half, z = wheel.base / 2, half_base_angle(pair, number), wheel.teeth
-    sense = -1 if wheel.internal else 1
+WHEELS = [
+    PairGeometry("external", 3.0, (12, 24), (0.6, 0.36)).wheels[0],
+    PairGeometry("external", 3.0, (12, 24), (0.6, 0.36)).wheels[1],
+    PairGeometry("external", 3.0, (25, 40), (-0.1, 0.2)).wheels[0],
+    PairGeometry("internal", 3.0, (20, 62), (0.3, 0.3)).wheels[1],
+    PairGeometry("internal", 3.0, (20, 63), (0.1, -0.2)).wheels[1],
+    PairGeometry("internal", 3.0, (20, 81), (0.0, 0.9)).wheels[1],
+]
+"""Wheels of which measurements are taken from true teeth, even and odd, external and internal."""
 
-    def place(roll: float, turned: float, side: int) -> tuple[np.ndarray, np.ndarray]:
-        places, slopes = involute_curve(base, np.array([roll]), half, sense)
-        mirrored = np.array([side, 1.0])
-        cosine, sine = math.cos(turned), math.sin(turned)
-        turning = np.array([[cosine, -sine], [sine, cosine]])
-        return turning @ (places[0] * mirrored), turning @ (slopes[0] * mirrored)
 
-    # Pins lie in a gap: between this tooth and the next, about the gap's middle.
-    def gap_to_pin(radius: float) -> float:
-        centre = radius * np.array([math.sin(math.pi / z), math.cos(math.pi / z)])
-        near = minimize_scalar(
-            lambda roll: float(np.hypot(*(place(roll, 0.0, 1)[0] - centre))), bounds=(1e-6, 1.2), method="bounded",
-            options={"xatol": 1e-12},
-        )  # fmt: skip
-        return float(near.fun) - found.pin / 2
+def _right_flank(wheel: GearWheel) -> CubicHermiteSpline:
+    """The right flank of the true tooth on the y axis, as a curve through its places with their slopes."""
+    flank = next(piece for piece in tooth_profile(wheel).pieces if piece.layer == "flank")
+    order = 1 if flank.parameter[0] < flank.parameter[-1] else -1
+    return CubicHermiteSpline(flank.parameter[::order], flank.places[::order], flank.slopes[::order])
 
-    middle = wheel.pitch / 2 + shifts[number] * 3.0
-    radius = brentq(
-        gap_to_pin, middle - (0.6 if sense > 0 else 2.4), middle + (2.4 if sense > 0 else 0.6), xtol=1e-11
+
+NEAR_FLANK = 2e-5
+"""By so much [m] lie cubic curves through 25 places of flanks of module 3 from the involute, generously."""
+
+
+@pytest.mark.parametrize("wheel", WHEELS, ids=lambda wheel: f"{wheel.internal}-{wheel.teeth}")
+def test_span_is_the_distance_of_parallel_tangents_of_true_flanks(wheel: GearWheel) -> None:
+    """Jaws on the true flanks about the middle of k teeth, of an internal wheel of k gaps."""
+    curve, found = _right_flank(wheel), wheel_measurements(wheel)
+    assert found.span_teeth >= 2
+    # An external jaw lies on the right flank of the last of k teeth, an internal one on the left flank of the tooth
+    # behind the last of k gaps; the tangent there is upright, the middle of all lies on the y axis.
+    turned = (found.span_teeth - (1 if not wheel.internal else 0)) * math.pi / wheel.teeth
+    mirror = -1 if wheel.internal else 1
+    cosine, sine = math.cos(turned), math.sin(turned)
+
+    def across(roll: float, derivative: int) -> float:
+        x, y = curve(roll, derivative)
+        return float(cosine * mirror * x + sine * y)
+
+    roll = brentq(lambda value: across(value, 1), curve.x[0], curve.x[-1], xtol=1e-13)
+    assert found.span == pytest.approx(2 * across(roll, 0), abs=NEAR_FLANK)
+
+
+@pytest.mark.parametrize("wheel", WHEELS, ids=lambda wheel: f"{wheel.internal}-{wheel.teeth}")
+def test_pins_touch_true_flanks(wheel: GearWheel) -> None:
+    """A pin in the middle of a gap whose least distance from the true flank is its radius."""
+    curve, found = _right_flank(wheel), wheel_measurements(wheel)
+    gap = math.pi / wheel.teeth
+    fine = curve(np.linspace(curve.x[0], curve.x[-1], 20_001))
+
+    def beyond(radius: float) -> float:
+        centre = radius * np.array([math.sin(gap), math.cos(gap)])
+        return float(np.hypot(*(fine - centre).T).min()) - found.pin / 2
+
+    pitch = wheel.pitch / 2 + wheel.shift * 3.0
+    # On an external wheel the pin lies outside the middle of the flank, on an internal one inside.
+    low, high = (pitch - 0.6, pitch + 2.6) if not wheel.internal else (pitch - 2.6, pitch + 0.6)
+    radius = brentq(beyond, low, high, xtol=1e-11)
+    between = 2 * radius * (1 if wheel.teeth % 2 == 0 else math.cos(gap / 2))
+    assert found.over_pins == pytest.approx(between + wheel.outwards * found.pin, abs=10 * NEAR_FLANK)
+
+
+@pytest.mark.parametrize("wheel", WHEELS, ids=lambda wheel: f"{wheel.internal}-{wheel.teeth}")
+def test_chords_are_those_of_true_teeth(wheel: GearWheel) -> None:
+    """The chord of a tooth on circles through places of the true flank."""
+    flank = next(piece for piece in tooth_profile(wheel).pieces if piece.layer == "flank")
+    for x, y in flank.places[1:-1]:
+        chord, height = wheel.chordal_thickness(2 * math.hypot(x, y))
+        assert chord == pytest.approx(2 * x, abs=1e-12 * wheel.tip)
+        assert height == pytest.approx(wheel.outwards * (wheel.tip / 2 - y), abs=1e-12 * wheel.tip)
+    # The constant chord is the chord where the rack's flank at its middle touches: upright to the radius of contact.
+    found = wheel_measurements(wheel)
+    alpha = wheel.pair.rack.pressure_angle
+    x = wheel.pitch_thickness / 2 * math.cos(alpha) ** 2
+    y = wheel.pitch / 2 + wheel.outwards * wheel.pitch_thickness / 2 * math.cos(alpha) * math.sin(alpha)
+    assert found.constant_chord == pytest.approx(2 * x, rel=1e-12)
+    assert found.constant_chord_height == pytest.approx(
+        wheel.outwards * (wheel.tip / 2 - y), abs=1e-12 * wheel.tip
     )
-    between = 2 * radius * (1 if z % 2 == 0 else math.cos(math.pi / (2 * z)))
-    assert found.over_pins == pytest.approx(between + sense * found.pin, abs=1e-7)
 
-    # A span: the farther flanks of k teeth, symmetric about the middle between them; the tangent there is upright.
-    turned = (found.span_teeth - 1) * math.pi / z if sense > 0 else -(found.span_teeth - 1) * math.pi / z
 
-    def lean(roll: float) -> float:
-        # The right flank of the rightmost tooth (of an internal wheel the left flank of it, across gaps).
-        return float(place(roll, -abs(turned), 1 if sense > 0 else -1)[1][0])
-
-    roll = brentq(lean, 1e-4, 1.2, xtol=1e-13)
-    across = 2 * abs(float(place(roll, -abs(turned), 1 if sense > 0 else -1)[0][0]))
-    if sense > 0:
-        assert found.span == pytest.approx(across, abs=1e-9)
-    assert not math.isnan(found.span)
+def test_spans_exist_where_jaws_reach_the_flanks() -> None:
+    """One tooth more adds the base pitch; a narrow helical wheel has no span."""
+    wheel = WHEELS[1]
+    teeth, span = span_over_teeth(wheel)
+    assert base_tangent_length(wheel, teeth) == span
+    step = base_tangent_length(wheel, teeth + 1) - span
+    assert step == pytest.approx(wheel.pair.base_pitch, rel=1e-12)
+    narrow = PairGeometry("external", 3.0, (40, 60), (0.0, 0.0), 0.5, width=4.0)
+    assert span_over_teeth(narrow.wheels[0])[0] == 0
 
 
 def test_undercut_is_where_the_rack_cuts_into_the_involute() -> None:
@@ -144,7 +179,7 @@ def test_undercut_is_where_the_rack_cuts_into_the_involute() -> None:
         pair = PairGeometry("external", 1.0, (teeth, 60), (shift, 0.0))
         if abs(shift - pair.wheels[0].least_shift) < 0.02:
             continue
-        base, half = teeth / 2 * math.cos(math.pi / 9), half_base_angle(pair, 0)
+        base, half = teeth / 2 * math.cos(math.pi / 9), pair.wheels[0].half_base_angle
         # A slight undercut is a narrow range of normals next to the flank's own.
         normals = math.pi / 9 + np.geomspace(1e-10, 1.0, 20_000)
         places = fillet_curve(pair.transverse, teeth / 2, shift, normals)[0]
@@ -160,8 +195,8 @@ def test_undercut_is_where_the_rack_cuts_into_the_involute() -> None:
 def test_an_undercut_wheel_loses_contact() -> None:
     """The contact ratio of true teeth, by the corner where fillet and involute cross."""
     pair = PairGeometry("external", 2.0, (9, 40), (0.0, 0.0))
-    profile, base = tooth_profile(pair, 0), pair.wheels[0].base / 2
-    corner = next(piece for piece in profile.pieces if piece.kind == "fillet").places[-1]
+    profile, base = tooth_profile(pair.wheels[0]), pair.wheels[0].base / 2
+    corner = next(piece for piece in profile.pieces if piece.layer == "fillet").places[-1]
     assert math.hypot(*corner) > base
     _begin, end = pair.action_ends
     left = (end - math.sqrt(math.hypot(*corner) ** 2 - base**2)) / pair.base_pitch

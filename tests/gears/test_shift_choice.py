@@ -12,7 +12,8 @@ from centrode.errors import InputError, MotionError
 from centrode.gears.blocking_contour import BLOCKING, CURVES, blocking_contour, margins_of, with_shifts
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.shift_choice import chosen_shifts, shift_sum_at
-from centrode.model.gear_pairs import PURPOSES, gear_pair_text, parse_gear_pair
+from centrode.model.gear_pair_files import gear_pair_text
+from centrode.model.gear_pairs import PURPOSES, parse_gear_pair
 from centrode.views import gear_pair as gear_pair_view
 
 PAIR = PairGeometry("external", 3.0, (12, 24), (0.0, 0.0))
@@ -121,6 +122,7 @@ def pair_text(**keys: object) -> str:
         ({"teeth": '[12, "rak"]'}, 'did you mean "rack"'),
         ({"teeth": "[12]"}, "[pinion, wheel]"),
         ({"shifts": '"equal slidng"'}, "equal sliding"),
+        ({"shifts": '"standard"'}, "GOST 16532"),
         ({"shifts": "[0.6, 9]"}, "between -5 and 5"),
         ({"module": "0"}, "positive"),
         ({"centre_distance": '"57 mm"'}, "both given"),

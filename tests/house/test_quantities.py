@@ -53,7 +53,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reactions = ["joint_force", "guide_force", "guide_normal", "guide_moment", "gear_moment", "tooth_force"]
     reactions += [f"rolling_{name}" for name in ("force", "normal", "tangential")]
     reactions += [f"{of}_{name}" for of in ("inertia", "frame", "shaking") for name in ("force", "moment")]
-    reactions += ["joint_moment", "centre_force"]
+    reactions += ["joint_moment", "centre_force", "tooth_radial_force"]
     reactions += [f"friction_{name}" for name in ("moment", "force", "power", "work", "turns")]
     reactions += ["efficiency", "self_locking", "balancing", "determined", "reaction_status", "reaction_loss"]
     centres = (

@@ -45,7 +45,9 @@ ALLOWED = {
         "centrode.dynamics.force_polygons.results",
         "centrode.dynamics.steady_motion.machine",
         "centrode.views.cam_sheets",
+        "centrode.gears.results",
         "centrode.views.drawing_sheets",
+        "centrode.views.gear_sheets",
         "centrode.views.path_sheets",
     },
     # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed

@@ -6,7 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from centrode.model.files import mechanism_text, parse_mechanism
-from centrode.model.links import Gear, Rolling, Track
+from centrode.model.gears import Gear
+from centrode.model.links import Rolling, Track
 from centrode.model.mechanism import Mechanism
 
 Complaint = Callable[[str], str]

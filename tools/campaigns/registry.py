@@ -13,6 +13,7 @@ from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.gaps import cases as gaps
+from tools.campaigns.gears import cases as gears
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -35,5 +36,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         free_motions.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
+        gears.CAMPAIGN,
     )
 }

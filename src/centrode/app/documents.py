@@ -20,7 +20,13 @@ from centrode.locale import _, chosen_language
 from centrode.model.cam_files import AnyCam, kind_of_cam
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import PROBLEMS_SOUGHT, Place, error_at_place, problems_within
-from centrode.model.toml import bare_angles_of, is_cam, toml_tables, validated_tables
+from centrode.model.toml import (
+    bare_angles_of,
+    description_kind,
+    refuse_other_kind,
+    toml_tables,
+    validated_tables,
+)
 
 Tables: TypeAlias = Mapping[str, Any]
 
@@ -91,7 +97,7 @@ class Document:
     @property
     def is_cam(self) -> bool:
         """Whether the text says that it describes a cam."""
-        return is_cam(self.tables)
+        return description_kind(self.tables) == "cam"
 
     def require_mechanism(self) -> Mechanism:
         """The mechanism; InputError with its first problem where the text describes none."""
@@ -134,12 +140,10 @@ def _kept_document(text: str, folder: Path, _language: str) -> Document:
     except InputError as error:
         return Document(text, _readable_tables(text), None, None, None, (_at_line(error, text),))
     try:
-        if tables.get("kind") == "gear pair":
-            repair = _("compute it with: centrode gears; in Python with gear_pair")
-            raise InputError("", _("this describes a pair of gears, not a linkage"), repair)
-        if is_cam(tables):
+        if description_kind(tables) == "cam":
             cam: AnyCam = validated_tables(kind_of_cam(tables), tables, folder, bare_angles_of(tables))
             return Document(text, tables, None, cam, None, ())
+        refuse_other_kind(tables, "linkage")
         mechanism = validated_tables(Mechanism, tables, folder, bare_angles_of(tables))
     except ValidationError as error:
         return Document(text, tables, None, None, None, tuple(_validation_problems(error, text)))

@@ -31,6 +31,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam import Cam, Return
 from centrode.model.cam_files import AnyCam, require_curvature_cam
+from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.numerics.search import extremes, roots
 
 # Equidistants of a roller's path: the cam's profile one radius inside, the wall of a groove one radius
@@ -389,30 +390,7 @@ LEAST_PIECE = 8
 """Least number of spaces between points of a piece."""
 
 
-@dataclass(frozen=True)
-class CamOutline:
-    """A smooth piece of a curve.
-
-    Attributes
-    ----------
-    layer : str
-        What it belongs to.
-    phi : (n) [rad]
-        Growing; about a corner by what the normal has turned.
-    places, slopes : (n, 2) [m], [m/rad]
-        Points and derivatives by phi.
-    normals : (n, 2), optional
-        Unit vectors out of the cam, where they are known.
-    """
-
-    layer: Layer
-    phi: Array
-    places: Array
-    slopes: Array
-    normals: Array | None = None
-
-
-def cam_outlines(body: ProfileBody, samples: int, *, groove: bool = False) -> list[CamOutline]:
+def cam_outlines(body: ProfileBody, samples: int, *, groove: bool = False) -> list[OutlinePiece]:
     """The roller's path, the profile, and the outer wall of a groove if asked, each in pieces between breaks.
 
     Parameters
@@ -427,10 +405,10 @@ def cam_outlines(body: ProfileBody, samples: int, *, groove: bool = False) -> li
     """
     if groove:
         body.fit_groove()
-    found: list[CamOutline] = []
+    found: list[OutlinePiece] = []
     for arc, phi in pieces(body.closed.arcs, samples):
         frame = frames(arc.curve, phi)
-        found.append(CamOutline("path", phi, frame.place, frame.speed[:, None] * frame.tangent))
+        found.append(OutlinePiece("path", phi, frame.place, frame.speed[:, None] * frame.tangent))
         sides: tuple[Side, ...] = ("inner", "outer") if groove else ("inner",)
         for side in sides:
             off = equidistant(frame, signed_distance(body.roller, side))
@@ -439,14 +417,14 @@ def cam_outlines(body: ProfileBody, samples: int, *, groove: bool = False) -> li
                 name = "profile-working" if arc.kind == "working" else "profile-return"
             else:
                 name = "groove-working" if arc.kind == "working" else "groove-return"
-            found.append(CamOutline(name, phi, off.place, off.speed[:, None] * frame.tangent))
+            found.append(OutlinePiece(name, phi, off.place, off.speed[:, None] * frame.tangent))
         number = body.closed.arcs.index(arc)
         if phi[-1] > arc.edges[-2] and number < len(body.closed.joints):
             found += [one for side in sides for one in _corner(body, number, side, samples)]
     return found
 
 
-def _corner(body: ProfileBody, number: int, side: Side, samples: int) -> list[CamOutline]:
+def _corner(body: ProfileBody, number: int, side: Side, samples: int) -> list[OutlinePiece]:
     """The roller's own arc about a corner of the path, on the side where the walls before and behind it part."""
     joint, arc = body.closed.joints[number], body.closed.arcs[number]
     parts: Side = "outer" if joint.kink < 0.0 else "inner"
@@ -460,15 +438,17 @@ def _corner(body: ProfileBody, number: int, side: Side, samples: int) -> list[Ca
     outwards = np.stack([np.sin(normal), np.cos(normal)], axis=-1)
     along = np.stack([np.cos(normal), -np.sin(normal)], axis=-1)
     layer: Layer = "groove-return" if side == "outer" else "profile-return"
-    return [CamOutline(layer, joint.at + turned, frame.place + distance * outwards, sense * distance * along)]
+    return [
+        OutlinePiece(layer, joint.at + turned, frame.place + distance * outwards, sense * distance * along)
+    ]
 
 
-def shoe_outlines(shoe: Shoe, samples: int) -> list[CamOutline]:
+def shoe_outlines(shoe: Shoe, samples: int) -> list[OutlinePiece]:
     """The profile of a shoe in the leg's axes, in pieces between breaks."""
     found = []
     for _arc, phi in pieces([shoe.arc], samples):
         along = np.stack([np.cos(phi), -np.sin(phi)], axis=-1)
-        found.append(CamOutline("shoe", phi, shoe.place(phi), shoe.bend(phi)[:, None] * along))
+        found.append(OutlinePiece("shoe", phi, shoe.place(phi), shoe.bend(phi)[:, None] * along))
     return found
 
 

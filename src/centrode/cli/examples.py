@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 import click
@@ -39,21 +41,37 @@ def examples(name: str | None, out: Path | None, force: bool) -> None:
 
 
 def _listing() -> str:
-    """Linkages, then cams, then pairs of gears, each with what computes them."""
-    linkages, cams, pairs = ct.example_names(), ct.example_names("cam"), ct.example_names("gear pair")
-    count = ngettext("{count} mechanism", "{count} mechanisms", len(linkages)).format(count=len(linkages))
-    use = _("print one with: centrode examples NAME; compute it with: centrode run NAME")
-    lines = render.aligned(_rows((*linkages, *cams, *pairs))).splitlines()
-    counted = ngettext("{count} cam", "{count} cams", len(cams)).format(count=len(cams))
-    behind = _("compute one with: centrode cam NAME")
-    gears = ngettext("{count} pair of gears", "{count} pairs of gears", len(pairs)).format(count=len(pairs))
-    last = _("compute one with: centrode gears NAME")
-    ends = len(linkages), len(linkages) + len(cams)
-    first, second, third = (
-        "\n".join(lines[slice(*between)]) for between in ((0, ends[0]), ends, (ends[1], len(lines)))
+    """Linkages, then cams, pairs and trains of gears, each with what computes them."""
+    kinds = {
+        "linkage": (
+            ngettext("{count} mechanism", "{count} mechanisms", len(ct.example_names())),
+            _("print one with: centrode examples NAME; compute it with: centrode run NAME"),
+        ),
+        "cam": (
+            ngettext("{count} cam", "{count} cams", len(ct.example_names("cam"))),
+            _("compute one with: centrode cam NAME"),
+        ),
+        "gear pair": (
+            ngettext("{count} pair of gears", "{count} pairs of gears", len(ct.example_names("gear pair"))),
+            _("compute one with: centrode gears NAME"),
+        ),
+        "gear train": (
+            ngettext(
+                "{count} train of gears", "{count} trains of gears", len(ct.example_names("gear train"))
+            ),
+            _("compute one with: centrode trains NAME"),
+        ),
+    }
+    lines = iter(
+        render.aligned(_rows([name for kind in kinds for name in ct.example_names(kind)])).splitlines()
     )
-    return f"{first}\n\n{count}; {use}\n\n{second}\n\n{counted}; {behind}\n\n{third}\n\n{gears}; {last}"
+    parts = []
+    for kind, (counted, behind) in kinds.items():
+        count = len(ct.example_names(kind))
+        parts.append("\n".join(islice(lines, count)))
+        parts.append(f"{counted.format(count=count)}; {behind}")
+    return "\n\n".join(parts)
 
 
-def _rows(names: tuple[str, ...]) -> list[tuple[str, str]]:
+def _rows(names: Sequence[str]) -> list[tuple[str, str]]:
     return [(name, _(str(tomllib.loads(library.example_text(name)).get("title", "")))) for name in names]

@@ -36,6 +36,7 @@ from centrode.cli.sheets import sheets
 from centrode.cli.sweep import sweep
 from centrode.cli.synthesise import synthesise
 from centrode.cli.topic_command import topic_command
+from centrode.cli.trains import trains
 from centrode.cli.translation import language_option, translate_command, wished_language, with_language
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
@@ -57,6 +58,7 @@ OWN: tuple[click.Command, ...] = (
     cam,
     gears,
     synthesise,
+    trains,
     sweep,
     draw,
     sheets,

@@ -17,7 +17,7 @@ from centrode.locale import _, mark, ngettext
 FORMATS = ("pdf", "dxf")
 
 
-@click.command(help=mark("Draw a mechanism or a cam on sheets A1 at standard scales."))
+@click.command(help=mark("Draw a mechanism, a cam or gears on sheets A1."))
 @click.argument(
     "mechanism",
     metavar=mark("FILE_OR_EXAMPLE"),
@@ -72,7 +72,7 @@ def sheets(
             what = _("a sheet cannot be written as {ending}").format(ending=f'"{kind}"')
             raise InputError("--format", what, _("use one of {known}").format(known=", ".join(FORMATS)))
     wanted = None if scale is None else library.read_scale(scale, "--scale")
-    description = library.load_either(mechanism)
+    description = library.load_drawn(mechanism)
     with about(mechanism):
         places: list[float] = []
         if isinstance(description, ct.Mechanism):

@@ -14,58 +14,21 @@ from typing import Literal
 
 import numpy as np
 
-from centrode.gears.involutes import Array, involute, pressure_angle_of
-from centrode.gears.racks import STANDARD_RACK, ReferenceRack, TransverseRack, least_shift, transverse_rack
+from centrode.gears.involutes import Array
+from centrode.gears.racks import (
+    STANDARD_RACK,
+    ReferenceRack,
+    TransverseRack,
+    least_shift,
+    least_teeth,
+    transverse_rack,
+)
+from centrode.geometry.involute import involute, pressure_angle_of
+
+UNBOUNDED = 1e9
+"""Specific sliding beyond which contact lies at the base circle to rounding."""
 
 PairKind = Literal["external", "internal", "rack"]
-
-
-@dataclass(frozen=True)
-class GearWheel:
-    """One wheel of a pair.
-
-    Attributes
-    ----------
-    teeth : z; infinite of a rack
-    shift : x
-    internal : whether its teeth point inwards
-    pitch, base, working_pitch, tip, root : diameters d, d_b, d_w, d_a, d_f [m]; NaN of a rack
-    addendum, dedendum : heights over and below the pitch circle (of a rack: below its pitch line shifted by x) [m]
-    pitch_thickness, tip_thickness : of the tooth, along the circle in the transverse section [m]
-    least_shift : without undercut by the rack
-    active_pressure : pressure angle alpha_p at the end of the active flank
-    flank_pressure : pressure angle alpha_l where the fillet of the rack begins; NaN where no rack generates the wheel
-    sliding : specific sliding at the end of the active flank, the greatest of the wheel
-    """
-
-    teeth: float
-    shift: float
-    internal: bool
-    pitch: float
-    base: float
-    working_pitch: float
-    tip: float
-    root: float
-    addendum: float
-    dedendum: float
-    pitch_thickness: float
-    tip_thickness: float
-    least_shift: float
-    active_pressure: float
-    flank_pressure: float
-    sliding: float
-
-    @property
-    def undercut(self) -> bool:
-        """Whether the rack cuts into the involute."""
-        return not self.internal and math.isfinite(self.teeth) and self.shift < self.least_shift
-
-    @property
-    def interferes(self) -> bool:
-        """Whether the other wheel's tip reaches below the involute into the fillet."""
-        if self.internal or not math.isfinite(self.teeth):
-            return False
-        return not math.tan(self.active_pressure) >= math.tan(self.flank_pressure)
 
 
 @dataclass(frozen=True)
@@ -193,7 +156,7 @@ class PairGeometry:
 
         The second wheel's tip gives the beginning, the pinion's own tip the end.
         """
-        base = self.wheel_base(0) / 2
+        base = self.wheels[0].base / 2
         end = _tangent_length(self.tip_diameters[0] / 2, base)
         line = self.line_length
         if self.kind == "rack":
@@ -201,7 +164,7 @@ class PairGeometry:
             height = (self.rack.addendum - self.shifts[0]) * self.module
             pitch = self.transverse.module * self.teeth[0] / 2 * math.sin(self.working_angle)
             return pitch - height / math.sin(self.working_angle), end
-        other = _tangent_length(self.tip_diameters[1] / 2, self.wheel_base(1) / 2)
+        other = _tangent_length(self.tip_diameters[1] / 2, self.wheels[1].base / 2)
         return (line - other, end) if self.sign > 0 else (other - line, end)
 
     @cached_property
@@ -214,7 +177,7 @@ class PairGeometry:
     @cached_property
     def pitch_curvature_radius(self) -> float:
         """Radius of curvature of the pinion's flank at the pitch point [m]."""
-        return self.wheel_base(0) / 2 * math.tan(self.working_angle)
+        return self.wheels[0].base / 2 * math.tan(self.working_angle)
 
     @cached_property
     def action_length(self) -> float:
@@ -231,24 +194,6 @@ class PairGeometry:
     def overlap_ratio(self) -> float:
         """epsilon_beta = b sin(beta)/(pi m); zero where the width is not given."""
         return self.width * math.sin(self.helix_angle) / (math.pi * self.module)
-
-    def wheel_base(self, number: int) -> float:
-        """Diameter of the base circle of a wheel [m]."""
-        angle = self.transverse.pressure_angle
-        return self.transverse.module * self.teeth[number] * math.cos(angle)
-
-    def tooth_thickness(self, number: int, diameter: float) -> float:
-        """Thickness of a tooth on a circle [m], along it in the transverse section; NaN inside the base circle."""
-        base = self.wheel_base(number)
-        if not base <= diameter:
-            return math.nan
-        slope, angle = (
-            2 * self.shifts[number] * math.tan(self.rack.pressure_angle),
-            self.transverse.pressure_angle,
-        )
-        sign = -1 if number == 1 and self.kind == "internal" else 1
-        difference = involute(angle) - involute(math.acos(base / diameter))
-        return diameter * ((math.pi / 2 + sign * slope) / self.teeth[number] + sign * difference)
 
     def other_curvature_radius(self, radius: Array | float) -> Array:
         """Radius of curvature of the second wheel's flank [m] where the pinion's has a value; infinite of a rack."""
@@ -278,56 +223,225 @@ class PairGeometry:
     @cached_property
     def wheels(self) -> tuple[GearWheel, GearWheel]:
         """Both wheels."""
-        return self._wheel(0), self._wheel(1)
+        return GearWheel(self, 0), GearWheel(self, 1)
 
-    def _wheel(self, number: int) -> GearWheel:
-        teeth, shift = self.teeth[number], self.shifts[number]
-        internal = number == 1 and self.kind == "internal"
-        begin, end = self.action_ends
-        angle = self.transverse.pressure_angle
-        thickness = math.pi / 2 + (-1 if internal else 1) * 2 * shift * math.tan(self.rack.pressure_angle)
-        pitch_thickness = thickness * self.transverse.module
-        if not math.isfinite(teeth):
-            nothing = math.nan
-            height, depth = self.rack.addendum * self.module, self.transverse.dedendum
-            tip_thickness = pitch_thickness - 2 * height * math.tan(angle)
-            return GearWheel(
-                teeth, shift, False, nothing, nothing, nothing, nothing, nothing, height, depth, pitch_thickness,
-                tip_thickness, nothing, nothing, nothing, float(self.specific_sliding(end)[1]),
-            )  # fmt: skip
-        pitch, base = self.transverse.module * teeth, self.wheel_base(number)
-        tip, root = self.tip_diameters[number], self.root_diameters[number]
-        sign = -1 if internal else 1
-        radius = begin if number == 0 else end
-        own = radius if number == 0 else float(self.other_curvature_radius(radius))
-        flank = math.nan
-        if not internal:
-            # Where the straight flank of the rack ends: (h_a* - x) m_n below the pitch circle (GOST 16532).
-            flank = math.atan(
-                math.tan(angle)
-                - 4
-                * (self.rack.addendum - shift)
-                * self.module
-                / (self.transverse.module * teeth * math.sin(2 * angle))
-            )
-        return GearWheel(
-            teeth,
-            shift,
-            internal,
-            pitch,
-            base,
-            base / math.cos(self.working_angle),
-            tip,
-            root,
-            sign * (tip - pitch) / 2,
-            sign * (pitch - root) / 2,
-            pitch_thickness,
-            self.tooth_thickness(number, tip),
-            math.nan if internal else least_shift(self.rack, teeth, self.helix_angle),
-            math.atan(2 * own / base),
-            flank,
-            float(self.specific_sliding(radius)[number]),
+    @cached_property
+    def tips_clear(self) -> float:
+        """By how much the tips of an internal pair pass each other [rad]; infinite where their circles do not cross.
+
+        Where both tip circles cross, a tooth of the pinion leaves the gap of the wheel sideways. Its tip passes that of
+        the wheel's tooth where this angle of the wheel is positive; otherwise the tips run into each other.
+        """
+        if self.kind != "internal":
+            return math.inf
+        own, other, distance = self.wheels[0].tip / 2, self.wheels[1].tip / 2, self.centre_distance
+        if not abs(own - distance) < other < own + distance:
+            return math.inf
+        # Angles from the line of centres to the place where the tip circles cross, about both axes.
+        about_pinion = math.acos((other**2 - own**2 - distance**2) / (2 * own * distance))
+        about_wheel = math.acos((distance**2 + other**2 - own**2) / (2 * distance * other))
+        working = involute(self.working_angle)
+        first = about_pinion + involute(math.acos(min(self.wheels[0].base / 2 / own, 1.0))) - working
+        second = about_wheel + involute(math.acos(min(self.wheels[1].base / 2 / other, 1.0))) - working
+        return first / self.ratio - second
+
+
+@dataclass(frozen=True)
+class GearWheel:
+    """One wheel of a pair; lengths of a rack that a circle would have are NaN.
+
+    Attributes
+    ----------
+    pair : PairGeometry
+    number : 0 of the pinion, 1 of the other one
+    """
+
+    pair: PairGeometry
+    number: int
+
+    @property
+    def teeth(self) -> float:
+        """Z; infinite of a rack."""
+        return self.pair.teeth[self.number]
+
+    @property
+    def shift(self) -> float:
+        """X, of the normal section."""
+        return self.pair.shifts[self.number]
+
+    @property
+    def internal(self) -> bool:
+        """Whether its teeth point inwards."""
+        return self.number == 1 and self.pair.kind == "internal"
+
+    @property
+    def is_rack(self) -> bool:
+        """Whether it is a rack."""
+        return not math.isfinite(self.teeth)
+
+    @property
+    def generated(self) -> bool:
+        """Whether the reference rack generates it: an external wheel."""
+        return not self.internal and not self.is_rack
+
+    @property
+    def outwards(self) -> int:
+        """1 where the teeth grow thinner outwards; -1 of an internal wheel."""
+        return -1 if self.internal else 1
+
+    @cached_property
+    def pitch(self) -> float:
+        """Diameter d = m_t z [m]."""
+        return math.nan if self.is_rack else self.pair.transverse.module * self.teeth
+
+    @cached_property
+    def base(self) -> float:
+        """Diameter d_b = d cos(alpha_t) [m]."""
+        return self.pitch * math.cos(self.pair.transverse.pressure_angle)
+
+    @cached_property
+    def working_pitch(self) -> float:
+        """Diameter d_w [m]."""
+        return self.base / math.cos(self.pair.working_angle)
+
+    @cached_property
+    def tip(self) -> float:
+        """Diameter d_a [m]."""
+        return self.pair.tip_diameters[self.number]
+
+    @cached_property
+    def root(self) -> float:
+        """Diameter d_f [m]."""
+        return self.pair.root_diameters[self.number]
+
+    @cached_property
+    def addendum(self) -> float:
+        """Height of a tooth over the pitch circle [m]."""
+        if self.is_rack:
+            return self.pair.rack.addendum * self.pair.module
+        return self.outwards * (self.tip - self.pitch) / 2
+
+    @cached_property
+    def dedendum(self) -> float:
+        """Depth of a gap below the pitch circle [m]; of a rack below its pitch line shifted by x."""
+        if self.is_rack:
+            return self.pair.transverse.dedendum
+        return self.outwards * (self.pitch - self.root) / 2
+
+    @cached_property
+    def radial_clearance(self) -> float:
+        """Between its tip and the root of the other wheel [m]."""
+        other = self.pair.wheels[1 - self.number]
+        if self.pair.kind == "internal":
+            inner, outer = (self.tip, other.root) if self.number == 0 else (other.root, self.tip)
+            return (outer - inner) / 2 - self.pair.centre_distance
+        if self.pair.kind == "external":
+            return self.pair.centre_distance - (self.tip + other.root) / 2
+        # The pitch line of the rack lies x m outside the pinion's pitch circle.
+        line = self.pair.wheels[0].pitch / 2 + self.pair.shifts[0] * self.pair.module
+        if self.number == 0:
+            return line + self.pair.transverse.dedendum - self.tip / 2
+        return line - self.addendum - other.root / 2
+
+    @cached_property
+    def pitch_thickness(self) -> float:
+        """Thickness of a tooth on the pitch circle [m], along it in the transverse section."""
+        slope = 2 * self.shift * math.tan(self.pair.rack.pressure_angle)
+        return (math.pi / 2 + self.outwards * slope) * self.pair.transverse.module
+
+    @cached_property
+    def tip_thickness(self) -> float:
+        """Thickness of a tooth on the tip circle [m]."""
+        if self.is_rack:
+            return self.pitch_thickness - 2 * self.addendum * math.tan(self.pair.transverse.pressure_angle)
+        return self.thickness(self.tip)
+
+    @cached_property
+    def half_base_angle(self) -> float:
+        """Half of the angle [rad] that a tooth subtends at the base circle, involutes prolonged to it."""
+        return self.pitch_thickness / self.pitch + self.outwards * involute(
+            self.pair.transverse.pressure_angle
         )
+
+    def thickness(self, diameter: float) -> float:
+        """Thickness of a tooth on a circle [m], along it in the transverse section; NaN inside the base circle."""
+        if not self.base <= diameter:
+            return math.nan
+        angle = involute(math.acos(self.base / diameter))
+        return diameter * (self.half_base_angle - self.outwards * angle)
+
+    def chordal_thickness(self, diameter: float) -> tuple[float, float]:
+        """Chord of a tooth on a circle, and its distance from the tip [m]; NaN inside the base circle."""
+        half = self.thickness(diameter) / diameter
+        height = self.outwards * (self.tip / 2 - diameter / 2 * math.cos(half))
+        return diameter * math.sin(half), height
+
+    @cached_property
+    def least_shift(self) -> float:
+        """X_min, below which the rack undercuts; NaN where no rack generates the wheel."""
+        if not self.generated:
+            return math.nan
+        return least_shift(self.pair.rack, self.teeth, self.pair.helix_angle)
+
+    @cached_property
+    def least_teeth(self) -> float:
+        """Z_min, below which the rack undercuts a wheel of this shift; NaN where no rack generates the wheel."""
+        if not self.generated:
+            return math.nan
+        return least_teeth(self.pair.rack, self.shift, self.pair.helix_angle)
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the rack cuts into the involute."""
+        return self.generated and self.shift < self.least_shift
+
+    @cached_property
+    def active_end(self) -> float:
+        """Where its active flank ends towards the root, as the radius of curvature of the pinion's flank [m]."""
+        return self.pair.action_ends[self.number]
+
+    @cached_property
+    def active_pressure(self) -> float:
+        """Pressure angle alpha_p at that end; NaN of a rack."""
+        if self.is_rack:
+            return math.nan
+        own = self.active_end
+        if self.number == 1:
+            own = float(self.pair.other_curvature_radius(own))
+        return math.atan(2 * own / self.base)
+
+    @cached_property
+    def flank_pressure(self) -> float:
+        """Pressure angle alpha_l where the fillet of the rack begins; NaN where no rack generates the wheel.
+
+        The straight flank of a usual rack ends (h_a* - x) m_n below the pitch circle (GOST 16532).
+        """
+        if not self.generated:
+            return math.nan
+        angle = self.pair.transverse.pressure_angle
+        depth = (self.pair.rack.straight - self.shift) * self.pair.module
+        return math.atan(math.tan(angle) - 4 * depth / (self.pitch * math.sin(2 * angle)))
+
+    @property
+    def interferes(self) -> bool:
+        """Whether the other wheel's tip reaches below the involute into the fillet."""
+        return self.generated and not math.tan(self.active_pressure) >= math.tan(self.flank_pressure)
+
+    @property
+    def tip_inside_base(self) -> bool:
+        """Whether its tips end inside the base circle, where there is no involute."""
+        return not self.is_rack and self.tip < self.base
+
+    @cached_property
+    def sliding(self) -> float:
+        """Specific sliding at the end of the active flank, the greatest of the wheel; infinite at the base circle."""
+        return float(self.pair.specific_sliding(self.active_end)[self.number])
+
+    @property
+    def sliding_is_unbounded(self) -> bool:
+        """Whether contact reaches the base circle, where specific sliding is infinite, or goes beyond."""
+        # Beyond the base circle it returns from infinity with the other sign.
+        return abs(self.sliding) > UNBOUNDED or self.sliding > 1e-12
 
 
 def _tangent_length(radius: float, base: float) -> float:

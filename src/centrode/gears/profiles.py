@@ -4,35 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
 
-from centrode.gears.involutes import Array, involute, involute_curve
-from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.involutes import Array, involute_curve
+from centrode.gears.pair_geometry import GearWheel, PairGeometry
 from centrode.gears.racks import TransverseRack, fillet_curve
+from centrode.numerics.outline_pieces import OutlinePiece
 
 FLANK, FILLET, ARC = 25, 25, 5
 """Places of a flank, of a fillet, and of an arc of the tip or root circle: cubic curves through them with their slopes
 depart by less than 1e-6 of the module."""
-
-
-@dataclass(frozen=True, eq=False)
-class ProfilePiece:
-    """A smooth piece of a tooth.
-
-    Attributes
-    ----------
-    kind : "root", "fillet", "flank" or "tip"
-    parameter : (n) growing or falling
-    places, slopes : (n, 2) [m], and derivatives by the parameter
-    """
-
-    kind: Literal["root", "fillet", "flank", "tip"]
-    parameter: Array
-    places: Array
-    slopes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,76 +24,71 @@ class ToothProfile:
 
     Attributes
     ----------
-    pieces : from the root to the tip
+    pieces : on the layers "root", "fillet", "flank", "tip"
     flank_radius : where the involute begins [m]: above the end that the rack gives it where the wheel is undercut
     teeth : number of them
     """
 
-    pieces: tuple[ProfilePiece, ...]
+    pieces: tuple[OutlinePiece, ...]
     flank_radius: float
     teeth: int
 
 
-def tooth_profile(pair: PairGeometry, number: int) -> ToothProfile:
-    """The profile of a wheel, 0 or 1, that has a number of teeth.
+def tooth_profile(wheel: GearWheel) -> ToothProfile:
+    """The profile of a wheel that is no rack.
 
     An external wheel has the fillet of the generating rack; if it is undercut, also the corner where that crosses the
     involute. The flank of an internal wheel goes on to its root circle, as no rack generates it. Places are on the
     curves to rounding.
     """
-    wheel = pair.wheels[number]
     teeth, base = int(wheel.teeth), wheel.base / 2
     root, tip = wheel.root / 2, wheel.tip / 2
-    half = half_base_angle(pair, number)
+    half = wheel.half_base_angle
     if wheel.internal:
         rolls = np.linspace(_roll(root, base), _roll(max(tip, base), base), FLANK)
-        flank = ProfilePiece("flank", rolls, *involute_curve(base, rolls, half, -1))
+        flank = OutlinePiece("flank", rolls, *involute_curve(base, rolls, half, -1))
         return ToothProfile(_with_arcs((flank,), root, tip, teeth), root, teeth)
-    last, begin = pair.transverse.pressure_angle, 0.0
+    last, begin = wheel.pair.transverse.pressure_angle, 0.0
     if wheel.undercut:
-        last, begin = _undercut(pair, number, half)
+        last, begin = _undercut_corner(wheel)
     normals = np.linspace(math.pi / 2, last, FILLET)
-    fillet = ProfilePiece("fillet", normals, *fillet_curve(*_generation(pair, number), normals))
+    fillet = OutlinePiece("fillet", normals, *fillet_curve(*_generation(wheel), normals))
     begin = begin or _roll(float(np.hypot(*fillet.places[-1])), base)
     rolls = np.linspace(begin, _roll(tip, base), FLANK)
-    flank = ProfilePiece("flank", rolls, *involute_curve(base, rolls, half))
+    flank = OutlinePiece("flank", rolls, *involute_curve(base, rolls, half))
     pieces = _with_arcs((fillet, flank), root, tip, teeth)
     return ToothProfile(pieces, base * math.hypot(1.0, begin), teeth)
 
 
-def true_contact_ratio(pair: PairGeometry) -> float:
-    """Contact ratio of the involutes that the rack leaves: less than that by the tips where a wheel is undercut.
+def true_action_ends(pair: PairGeometry) -> tuple[float, float]:
+    """Where contact begins and ends as the pinion's radius of curvature [m], on the involutes that the rack leaves.
 
     Contact begins where the pinion's involute begins, if the other wheel's tip reaches below it, and ends where that of
     the wheel does.
     """
     begin, end = pair.action_ends
-    begins = [
-        math.sqrt(
-            max(tooth_profile(pair, number).flank_radius ** 2 - (pair.wheels[number].base / 2) ** 2, 0.0)
-        )
-        for number in range(1 if pair.kind == "rack" else 2)
-        if pair.wheels[number].undercut
-    ]
-    if pair.wheels[0].undercut:
-        begin = max(begin, begins[0])
-    if pair.wheels[1].undercut:
-        end = min(end, pair.line_length - begins[-1])
-    return (end - max(begin, 0.0)) / pair.base_pitch
+    first, second = pair.wheels
+    if first.undercut:
+        begin = max(begin, _flank_begin(first))
+    if second.undercut:
+        end = min(end, pair.line_length - _flank_begin(second))
+    return max(begin, 0.0), end
 
 
-def half_base_angle(pair: PairGeometry, number: int) -> float:
-    """Half of the angle [rad] that a tooth of a wheel subtends at its base circle, outwards as far as it is there."""
-    wheel = pair.wheels[number]
-    side = -1 if wheel.internal else 1
-    half = math.pi / 2 + side * 2 * wheel.shift * math.tan(pair.rack.pressure_angle)
-    return half / wheel.teeth + side * involute(pair.transverse.pressure_angle)
+def true_contact_ratio(pair: PairGeometry) -> float:
+    """Contact ratio of the involutes that the rack leaves: less than that by the tips where a wheel is undercut."""
+    begin, end = true_action_ends(pair)
+    return (end - begin) / pair.base_pitch
 
 
-def _generation(pair: PairGeometry, number: int) -> tuple[TransverseRack, float, float]:
+def _flank_begin(wheel: GearWheel) -> float:
+    """Radius of curvature [m] where the involute of an undercut wheel begins."""
+    return _undercut_corner(wheel)[1] * wheel.base / 2
+
+
+def _generation(wheel: GearWheel) -> tuple[TransverseRack, float, float]:
     """The rack, the pitch radius and the rack's shift [m] of a wheel."""
-    wheel = pair.wheels[number]
-    return pair.transverse, wheel.pitch / 2, wheel.shift * pair.module
+    return wheel.pair.transverse, wheel.pitch / 2, wheel.shift * wheel.pair.module
 
 
 def _roll(radius: float, base: float) -> float:
@@ -119,26 +97,27 @@ def _roll(radius: float, base: float) -> float:
 
 
 def _with_arcs(
-    pieces: tuple[ProfilePiece, ...], root: float, tip: float, teeth: int
-) -> tuple[ProfilePiece, ...]:
+    pieces: tuple[OutlinePiece, ...], root: float, tip: float, teeth: int
+) -> tuple[OutlinePiece, ...]:
     """The pieces between the arc of the root circle from the middle of the gap, and that of the tip circle."""
     start, end = pieces[0].places[0], pieces[-1].places[-1]
     arcs = (
         ("root", root, math.pi / teeth, math.atan2(start[0], start[1])),
         ("tip", tip, math.atan2(end[0], end[1]), 0.0),
     )
-    made: list[ProfilePiece] = []
+    arcs_of: list[OutlinePiece] = []
     for kind, radius, first, last in arcs:
         angles = np.linspace(first, last, ARC)
         sine, cosine = radius * np.sin(angles), radius * np.cos(angles)
         places, slopes = np.stack([sine, cosine], axis=-1), np.stack([cosine, -sine], axis=-1)
-        made.append(ProfilePiece(kind, angles, places, slopes))  # type: ignore[arg-type]
-    return (made[0], *pieces, made[1])
+        arcs_of.append(OutlinePiece(kind, angles, places, slopes))
+    return (arcs_of[0], *pieces, arcs_of[1])
 
 
-def _undercut(pair: PairGeometry, number: int, half: float) -> tuple[float, float]:
+def _undercut_corner(wheel: GearWheel) -> tuple[float, float]:
     """Normal of the rack's edge, and roll of the involute, where both curves of an undercut wheel cross."""
-    generation, base = _generation(pair, number), pair.wheels[number].base / 2
+    generation, base, half = _generation(wheel), wheel.base / 2, wheel.half_base_angle
+    alpha = wheel.pair.transverse.pressure_angle
 
     def beyond(normal: float) -> float:
         """By which angle the fillet lies outside the involute's flank on the same circle."""
@@ -146,7 +125,7 @@ def _undercut(pair: PairGeometry, number: int, half: float) -> tuple[float, floa
         roll = _roll(math.hypot(x, y), base)
         return math.atan2(x, y) - (half - (roll - math.atan(roll)))
 
-    normals = np.linspace(math.pi / 2, pair.transverse.pressure_angle, 400)
+    normals = np.linspace(math.pi / 2, alpha, 400)
     places = fillet_curve(*generation, normals)[0]
     radii = np.hypot(*places.T)
     over = normals[radii >= base]
@@ -166,31 +145,18 @@ def _undercut(pair: PairGeometry, number: int, half: float) -> tuple[float, floa
         if (left < 0) != (right < 0):
             normal = float(brentq(beyond, float(before), float(after), xtol=1e-15, rtol=8.9e-16))
             return normal, _roll(float(np.hypot(*fillet_curve(*generation, np.array([normal]))[0][0])), base)
-    return pair.transverse.pressure_angle, 0.0
+    return alpha, 0.0
 
 
-def turned_pieces(
-    profile: ToothProfile, angle: float, centre: tuple[float, float] = (0.0, 0.0)
-) -> list[ProfilePiece]:
-    """The whole tooth, both flanks, with its middle turned counter-clockwise by an angle [rad] about a centre [m]."""
-    mirror = np.array([-1.0, 1.0])
-    left = [
-        ProfilePiece(
-            piece.kind, -piece.parameter[::-1], piece.places[::-1] * mirror, -piece.slopes[::-1] * mirror
-        )
-        for piece in reversed(profile.pieces)
-    ]
-    cosine, sine = math.cos(angle), math.sin(angle)
-    turning = np.array([[cosine, sine], [-sine, cosine]])
-    return [
-        ProfilePiece(piece.kind, piece.parameter, piece.places @ turning + centre, piece.slopes @ turning)
-        for piece in (*profile.pieces, *left)
-    ]
+def whole_tooth(profile: ToothProfile) -> list[OutlinePiece]:
+    """Both flanks of a tooth whose middle lies on the y axis, from the gap on its right to that on its left."""
+    right = [piece.rising() for piece in profile.pieces]
+    return [*right, *(piece.mirrored() for piece in reversed(right))]
 
 
 def wheel_outline(profile: ToothProfile) -> Array:
     """Places (n, 2) of the closed outline of a wheel with its first tooth on the y axis, the first place repeated."""
-    tooth = np.concatenate([piece.places for piece in turned_pieces(profile, 0.0)])
+    tooth = np.concatenate([piece.places for piece in whole_tooth(profile)])
     outline = []
     for number in range(profile.teeth):
         angle = -2 * math.pi * number / profile.teeth

@@ -9,6 +9,9 @@ import numpy as np
 
 from centrode.gears.involutes import Array
 
+EDGE = 13
+"""Places of the rounded edge of a rack's tooth."""
+
 
 @dataclass(frozen=True)
 class ReferenceRack:
@@ -32,6 +35,15 @@ class ReferenceRack:
         """The radius with which the clearance is just filled: c*/(1 - sin alpha)."""
         return self.clearance / (1 - math.sin(self.pressure_angle))
 
+    @property
+    def straight(self) -> float:
+        """How deep the straight flank goes below the middle line: h_a*, more with a small fillet.
+
+        A fillet that fills the clearance up to rounding of its printed value ends at h_a*.
+        """
+        rounded = self.fillet * (1 - math.sin(self.pressure_angle))
+        return self.addendum + max(self.clearance - rounded, 0.0)
+
 
 STANDARD_RACK = ReferenceRack()
 """That of GOST 13755 and ISO 53, profile A."""
@@ -45,7 +57,8 @@ class TransverseRack:
     ----------
     module : m_t [m]
     pressure_angle : alpha_t [rad]
-    addendum : h_a* m_n [m], to the end of the straight flank
+    addendum : h_a* m_n [m]
+    straight : [m], to the end of the straight flank
     dedendum : (h_a* + c*) m_n [m], to the tip line of the generating rack
     fillet : radius of the rounded edge [m] in this section
     """
@@ -53,6 +66,7 @@ class TransverseRack:
     module: float
     pressure_angle: float
     addendum: float
+    straight: float
     dedendum: float
     fillet: float
 
@@ -72,21 +86,46 @@ def transverse_rack(rack: ReferenceRack, module: float, helix_angle: float) -> T
         module / cosine,
         angle,
         rack.addendum * module,
+        rack.straight * module,
         (rack.addendum + rack.clearance) * module,
         fillet,
     )
 
 
 def least_shift(rack: ReferenceRack, teeth: float, helix_angle: float = 0.0) -> float:
-    """The shift coefficient x_min below which the rack undercuts a wheel: h_a* - z sin^2(alpha_t)/(2 cos(beta))."""
+    """The shift coefficient x_min below which the rack undercuts a wheel: h_a* - z sin^2(alpha_t)/(2 cos(beta)).
+
+    h_a* stands for the depth of the straight flank, which a fillet smaller than the clearance holds makes greater.
+    """
     angle = math.atan(math.tan(rack.pressure_angle) / math.cos(helix_angle))
-    return rack.addendum - teeth * math.sin(angle) ** 2 / (2 * math.cos(helix_angle))
+    return rack.straight - teeth * math.sin(angle) ** 2 / (2 * math.cos(helix_angle))
 
 
 def least_teeth(rack: ReferenceRack, shift: float = 0.0, helix_angle: float = 0.0) -> float:
     """The number of teeth z_min below which the rack undercuts: 2 (h_a* - x) cos(beta)/sin^2(alpha_t)."""
     angle = math.atan(math.tan(rack.pressure_angle) / math.cos(helix_angle))
-    return 2 * (rack.addendum - shift) * math.cos(helix_angle) / math.sin(angle) ** 2
+    return 2 * (rack.straight - shift) * math.cos(helix_angle) / math.sin(angle) ** 2
+
+
+def rack_tooth(rack: TransverseRack, shift: float) -> Array:
+    """Outline (n, 2) of a tooth of the generating rack [m] about the y axis, the wheel's pitch line at y = 0."""
+    alpha, radius = rack.pressure_angle, rack.fillet
+    half, slope = math.pi * rack.module / 4, math.tan(alpha)
+    centre = complex(
+        half - rack.dedendum * slope - radius * (1 / math.cos(alpha) - slope), shift - rack.dedendum + radius
+    )
+    edge = centre + radius * np.exp(1j * np.linspace(-math.pi / 2, -alpha, EDGE))
+    top = complex(half + rack.addendum * slope, shift + rack.addendum)
+    right = np.append(edge, top)
+    outline = np.concatenate([-np.conj(right[::-1]), right])
+    return np.stack([outline.real, outline.imag], axis=-1)
+
+
+def rack_positions(outline: Array, pitch_radius: float, rolled: Array) -> Array:
+    """Outlines (k, n, 2) of a rack in the frame of the wheel, after rolling by angles (k) [rad]."""
+    places = outline[:, 0] + 1j * (pitch_radius + outline[:, 1])
+    turned = (places[None, :] + pitch_radius * rolled[:, None]) * np.exp(1j * rolled)[:, None]
+    return np.stack([turned.real, turned.imag], axis=-1)
 
 
 def fillet_curve(

@@ -10,12 +10,14 @@ import numpy as np
 
 from centrode.errors import MotionError
 from centrode.gears.blocking_contour import BlockingContour, blocking_contour
-from centrode.gears.involutes import Array, involute
-from centrode.gears.measurements import WheelMeasurements, measurements
+from centrode.gears.involutes import Array
+from centrode.gears.measurements import WheelMeasurements, wheel_measurements
+from centrode.gears.pair_faults import PairFault, pair_faults
 from centrode.gears.pair_geometry import PairGeometry, PairKind
 from centrode.gears.profiles import ToothProfile, tooth_profile, true_contact_ratio
 from centrode.gears.racks import ReferenceRack
 from centrode.gears.shift_choice import chosen_shifts
+from centrode.geometry.involute import involute
 from centrode.locale import _
 from centrode.model.examples.catalogue import GearPairSource, gear_pair_of
 from centrode.model.gear_pairs import RACK, GearPair
@@ -80,8 +82,12 @@ class GearPairResults:
     def measurements(self) -> tuple[WheelMeasurements, ...]:
         """Of the pinion, and of the wheel where it is none but a rack."""
         pin = self.gear_pair.pin or 0.0
-        wheels = 1 if self.geometry.kind == "rack" else 2
-        return tuple(measurements(self.geometry, number, pin) for number in range(wheels))
+        return tuple(wheel_measurements(wheel, pin) for wheel in self.geometry.wheels if not wheel.is_rack)
+
+    @cached_property
+    def faults(self) -> tuple[PairFault, ...]:
+        """Everything that keeps the pair from working; empty where it works."""
+        return tuple(pair_faults(self.geometry))
 
     @cached_property
     def line_of_action(self) -> LineOfAction:
@@ -113,7 +119,7 @@ class GearPairResults:
     @cached_property
     def profiles(self) -> tuple[ToothProfile, ...]:
         """True teeth of the wheels; a rack has straight ones."""
-        return tuple(tooth_profile(self.geometry, number) for number in range(len(self.measurements)))
+        return tuple(tooth_profile(wheel) for wheel in self.geometry.wheels if not wheel.is_rack)
 
     @cached_property
     def true_contact_ratio(self) -> float:

@@ -15,8 +15,8 @@ from centrode.gears.blocking_contour import (
     sliding_difference,
     with_shifts,
 )
-from centrode.gears.involutes import involute
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.geometry.involute import involute
 from centrode.locale import _, mark
 
 _NO_SHIFTS = mark("no shifts of these wheels keep contact ratio, tips and flanks within their bounds")
@@ -79,7 +79,7 @@ def chosen_shifts(
     return _best(pair, goal, total)
 
 
-def parted(pair: PairGeometry, first: float, total: float) -> tuple[float, float]:
+def shifts_of_sum(pair: PairGeometry, first: float, total: float) -> tuple[float, float]:
     """Both shifts by that of the pinion and their sum, which is a difference where the wheel is internal."""
     return first, total - pair.sign * first
 
@@ -97,7 +97,7 @@ def _without_undercut(pair: PairGeometry, total: float | None) -> tuple[float, f
         # An internal wheel and a rack follow the pinion; another wheel gives back as far as its own teeth allow.
         second = first if pair.kind == "internal" else max(-first, other)
         return first, second
-    shifts = parted(pair, first, total)
+    shifts = shifts_of_sum(pair, first, total)
     if shifts[1] < other:
         what = _(
             "at this centre distance a wheel is undercut: the sum of shifts is {total:.6g}, {least:.6g} is needed"
@@ -110,23 +110,18 @@ def _equal_sliding(pair: PairGeometry, total: float) -> tuple[float, float]:
     """On the line of a sum: sliding of the pinion falls with its own shift, that of the wheel rises."""
 
     def difference(first: float) -> float:
-        return sliding_difference(with_shifts(pair, *parted(pair, first, total)))
+        return sliding_difference(with_shifts(pair, *shifts_of_sum(pair, first, total)))
 
     nodes = np.linspace(-MOST_SHIFT, MOST_SHIFT, 4 * GRID)
-    values = [_or_nan(difference, float(node)) for node in nodes]
+    values = [difference(float(node)) for node in nodes]
     for low, high, left, right in zip(nodes, nodes[1:], values, values[1:], strict=False):
         if math.isfinite(left) and math.isfinite(right) and left > 0 >= right:
             first = float(brentq(difference, float(low), float(high), xtol=1e-14))
-            shifts = parted(pair, first, total)
+            shifts = shifts_of_sum(pair, first, total)
             if abs(difference(first)) < 1e-9 and _is_possible(with_shifts(pair, *shifts)):
                 return shifts
     what = _("no shifts of this sum, {total:.6g}, slide equally and can work")
     raise MotionError("shifts", what.format(total=total))
-
-
-def _or_nan(function: Callable[[float], float], value: float) -> float:
-    number = function(value)
-    return number if math.isfinite(number) else math.nan
 
 
 def _is_possible(pair: PairGeometry) -> bool:
@@ -166,7 +161,11 @@ def _best(
     """The best shifts within the bounds: the best node of a grid, polished."""
 
     def shifts_at(free: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[float, float]:
-        return parted(pair, float(free[0]), total) if total is not None else (float(free[0]), float(free[1]))
+        return (
+            shifts_of_sum(pair, float(free[0]), total)
+            if total is not None
+            else (float(free[0]), float(free[1]))
+        )
 
     line = np.linspace(LEAST_SHIFT, MOST_SHIFT, GRID)
     nodes = (

@@ -15,7 +15,7 @@ from centrode.model.files import in_short_lines
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.reading import read_file
-from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
+from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
 from centrode.model.values import BareAngles
 
 AnyCam: TypeAlias = Cam | PlateCam
@@ -79,14 +79,7 @@ def cam_from(
 
 def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type[PlateCam]:
     """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage."""
-    if mapping.get("kind") == "gear pair":
-        repair = _("compute it with: centrode gears; in Python with gear_pair")
-        raise InputError(where, _("this describes a pair of gears, not a cam"), repair)
-    if not is_cam(mapping) and "links" in mapping:
-        what = _("this describes a linkage, not a cam")
-        raise InputError(
-            where, what, _("compute it with: centrode run; in Python read it with read_mechanism")
-        )
+    refuse_other_kind(mapping, "cam", where)
     given = [key for key in _OF_FOLLOWER if key in mapping]
     if not given:
         return Cam

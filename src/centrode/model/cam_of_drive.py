@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.model.examples import example_names, example_text
 from centrode.model.follower_cam import PlateCam
 from centrode.model.reading import Problem, nearest, read_file, value_text
-from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables
+from centrode.model.toml import bare_angles_of, description_kind, parse_tables, toml_tables
 from centrode.model.values import READING
 
 
@@ -46,7 +46,7 @@ def _text(name: str) -> str:
 
 def _parse_plate_cam(tables: Mapping[str, object], name: str) -> PlateCam:
     """The plate cam that tables describe."""
-    if not is_cam(tables):
+    if description_kind(tables) != "cam":
         what = _("this does not describe a cam")
         raise Problem(f"{name}: {what}" if name else what, _('a cam\'s description has kind = "cam"'))
     if "follower" not in tables:

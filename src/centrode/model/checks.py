@@ -12,7 +12,8 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.description import Description, value_at_start
 from centrode.model.drives import Drive
-from centrode.model.links import Gear, Link, Rolling
+from centrode.model.gears import Gear
+from centrode.model.links import Link, Rolling
 from centrode.model.loads import AnyLoad, TurningLoad
 from centrode.model.look_alikes import letters_note, look_alike
 from centrode.model.reading import FRAME, Place, Problem, nearest, two_points, value_text
@@ -72,6 +73,8 @@ def is_link(mechanism: Description, name: str) -> bool:
 
 # Checks of what joins links besides hinges and guides: gears, rolling, cylinders.
 
+APART = 1e-3
+"""So many modules may the centres of wheels differ from the distance of their pair: what printed distances round."""
 SAME = 1e-9
 """Radii that differ by less than this part of the greater are equal, as a wheel that fills its ring."""
 
@@ -108,6 +111,40 @@ def _gear(mechanism: Description, gear: Gear, at: Place) -> Iterator[Problem]:
     for name in gear.links:
         yield from link_known(mechanism, name, (*at, "links"))
     yield from link_known(mechanism, gear.carrier, (*at, "carrier"))
+    if gear.pair is not None:
+        yield from _pair_of_gear(mechanism, gear, at)
+
+
+def _pair_of_gear(mechanism: Description, gear: Gear, at: Place) -> Iterator[Problem]:
+    """A pair belongs to the plane, and its wheels stand as far apart on their carrier as they mesh."""
+    assert gear.pair is not None
+    if mechanism.space == "sphere":
+        what = _("the wheels of a pair have parallel axes: there is none on the sphere")
+        yield Problem(what, _("give the ratio"), (*at, "pair"))
+        return
+    bodies = (*gear.links, gear.carrier)
+    if not all(is_link(mechanism, body) for body in bodies):
+        return
+    held = _coordinates(mechanism, gear.carrier)
+    axes = [[point for point in points_on(mechanism, wheel) if point in held] for wheel in gear.links]
+    if [len(points) for points in axes] != [1, 1]:
+        return
+    (x, y), (to_x, to_y) = (held[points[0]] for points in axes)
+    apart, wanted = math.hypot(to_x - x, to_y - y), gear.pair.working_mesh()[1]
+    if abs(apart - wanted) > APART * gear.pair.module:
+        what = _("the centres are {apart:.9g} m apart, and the pair meshes at {wanted:.9g} m")
+        said = what.format(apart=apart, wanted=wanted)
+        yield Problem(said, _("move one of them, or change the shifts of the pair"), (*at, "pair"))
+
+
+def _coordinates(mechanism: Description, body: str) -> Mapping[str, tuple[float, float]]:
+    """Places of the points of a link or of the frame in its axes, those that are known."""
+    places = mechanism.frame.points if body == FRAME else mechanism.links[body].coordinates
+    return {
+        name: (float(place[0]), float(place[1]))
+        for name, place in places.items()
+        if isinstance(place, tuple) and len(place) == 2
+    }
 
 
 def _rolling_problems(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:

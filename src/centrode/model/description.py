@@ -13,8 +13,9 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.drives import Drive, motion_parameter_of
+from centrode.model.gears import Gear
 from centrode.model.initial_points import with_links_between_points
-from centrode.model.links import Frame, Gear, Guide, Link, Rolling
+from centrode.model.links import Frame, Guide, Link, Rolling
 from centrode.model.loads import AnyLoad, read_load
 from centrode.model.motion_parameter import (
     UNDRIVEN,

@@ -22,7 +22,7 @@ from centrode.model.load_paths import ROOMS, kind_of_place, place_of_number, wit
 from centrode.model.mechanism import Mechanism
 from centrode.model.number_paths import spot_of_path, words_of_path
 from centrode.model.reading import read_file, two_points
-from centrode.model.toml import bare_angles_of, is_cam, parse_tables, toml_tables, with_unit
+from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
 from centrode.model.values import BareAngles, Radians
 
 AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
@@ -91,12 +91,7 @@ def mechanism_from(
     bare_angles: BareAngles = "radians",
 ) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    if mapping.get("kind") == "gear pair":
-        repair = _("compute it with: centrode gears; in Python with gear_pair")
-        raise InputError(where, _("this describes a pair of gears, not a linkage"), repair)
-    if is_cam(mapping):
-        repair = _("compute it with: centrode cam; in Python read it with read_cam")
-        raise InputError(where, _("this describes a cam, not a linkage"), repair)
+    refuse_other_kind(mapping, "linkage", where)
     return parse_tables(Mechanism, mapping, where, folder, bare_angles)
 
 

@@ -7,14 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 
-import tomli_w
 from pydantic import PlainValidator, model_validator
 
-from centrode.errors import InputError
+from centrode.geometry.involute import involute, pressure_angle_of
 from centrode.locale import _
 from centrode.model.cam import whole
-from centrode.model.files import in_short_lines
-from centrode.model.links import part_tables
 from centrode.model.reading import (
     KEY,
     DescriptionPart,
@@ -26,7 +23,7 @@ from centrode.model.reading import (
     value_text,
 )
 from centrode.model.settings import Display
-from centrode.model.toml import bare_angles_of, parse_tables, toml_tables, with_unit
+from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables
 from centrode.model.values import (
     BareAngles,
     Flag,
@@ -74,6 +71,9 @@ def _tooth_number(value: object) -> int:
 def read_shifts(value: object) -> tuple[float, float] | Purpose:
     """Two shift coefficients, or what they are to be chosen for."""
     if isinstance(value, str):
+        if value == "standard":
+            what = _("the recommended shifts of GOST 16532 are not in this program")
+            raise Problem(what, _("give [x1, x2] from the standard, or another purpose"))
         if value not in PURPOSES:
             what = _("{value} is no purpose of shifts").format(value=value_text(value))
             raise Problem(what, nearest(value, list(PURPOSES)))
@@ -207,6 +207,45 @@ class GearPair(DescriptionPart):
         def __init__(self, **parts: Any) -> None: ...
 
     @property
+    def turns(self) -> int:
+        """1 where both wheels turn in opposite senses, -1 where the second has its teeth inside."""
+        return -1 if self.internal else 1
+
+    @property
+    def mesh_ratio(self) -> float:
+        """Turn of the wheel over that of the pinion, negative where they turn in opposite senses."""
+        first, second = self.teeth
+        assert isinstance(second, int)
+        return -self.turns * first / second
+
+    def working_mesh(self) -> tuple[float, float]:
+        """Working pressure angle [rad] of the transverse section, and centre distance [m], of a pair that is no rack.
+
+        Raises Problem where the numbers are missing: shifts that are chosen for a purpose without a centre distance.
+        """
+        first, second = self.teeth
+        assert isinstance(second, int)
+        teeth, slope = second + self.turns * first, math.tan(self.rack.pressure_angle)
+        angle = math.atan(slope / math.cos(self.helix_angle))
+        plain = self.module / math.cos(self.helix_angle) * teeth / 2
+        if self.centre_distance is not None:
+            cosine = plain * math.cos(angle) / self.centre_distance
+            if cosine > 1:
+                what = _("at its centre distance the flanks do not touch")
+                raise Problem(what, _("enlarge it"), ("centre_distance",))
+            return math.acos(cosine), self.centre_distance
+        if not isinstance(self.shifts, tuple):
+            what = _("the shifts of the pair are chosen for a purpose")
+            raise Problem(
+                what, _("give the numbers that centrode gears prints, or centre_distance"), ("shifts",)
+            )
+        total = self.shifts[1] + self.turns * self.shifts[0]
+        working = pressure_angle_of(involute(angle) + 2 * total * slope / teeth)
+        if math.isnan(working):
+            raise Problem(_("the wheels cannot mesh"), _("enlarge the sum of the shifts"), ("shifts",))
+        return working, plain * math.cos(angle) / math.cos(working)
+
+    @property
     def purpose(self) -> Purpose | None:
         """What the shifts are chosen for; None where numbers are given."""
         if isinstance(self.shifts, str):
@@ -232,11 +271,6 @@ class GearPair(DescriptionPart):
         return self
 
 
-def is_gear_pair(mapping: Mapping[str, Any]) -> bool:
-    """Whether a description says that it is that of a pair of wheels."""
-    return mapping.get("kind") == KIND
-
-
 def read_gear_pair(path: str | Path) -> GearPair:
     """The pair described in a TOML file; raises InputError that says where it is wrong."""
     path = Path(path)
@@ -256,15 +290,5 @@ def gear_pair_from(
     bare_angles: BareAngles = "radians",
 ) -> GearPair:
     """The pair described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    if not is_gear_pair(mapping) and ("links" in mapping or mapping.get("kind") == "cam"):
-        what = _("this describes no pair of gears")
-        raise InputError(where, what, _('a pair has kind = "gear pair", module and teeth'))
+    refuse_other_kind(mapping, KIND, where)
     return parse_tables(GearPair, mapping, where, folder, bare_angles)
-
-
-def gear_pair_text(pair: GearPair) -> str:
-    """The pair as TOML in SI, without defaults; `parse_gear_pair` gives exactly it back."""
-    tables = part_tables(pair)
-    if pair.display.refuses_bare_angles:
-        tables = with_unit(part_tables(gear_pair_from(tables, bare_angles="marked")))
-    return in_short_lines(tomli_w.dumps(tables))

@@ -13,7 +13,6 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.reading import (
     FRAME,
-    KEY,
     PLACED,
     DescriptionPart,
     FrozenMap,
@@ -47,7 +46,6 @@ from centrode.model.values import (
     quantity,
     read_coordinates,
     read_inertia,
-    si,
 )
 
 Shape = Literal["rod", "disc", "ring", "arc"]
@@ -190,13 +188,6 @@ PLANE_KEYS = ("through", "direction")
 SPHERE_KEYS = ("pole", "radius")
 
 
-def _read_ratio(value: object) -> float:
-    ratio = si(value, "ratio")
-    if ratio == 0:
-        raise Problem(_("{key} must not be zero").format(key=KEY))
-    return ratio
-
-
 def unit_along(direction: Vector | float) -> Vector:
     """Unit vector of a direction that is given as a vector or as an angle [rad]."""
     if isinstance(direction, tuple):
@@ -290,32 +281,6 @@ def _foreign(key: str, sphere: bool) -> Problem:
     return Problem(
         _("{key} is used on the sphere only").format(key=key), _("in the plane give through and direction")
     )
-
-
-class Gear(DescriptionPart):
-    """Two links whose angles against a carrier keep a ratio: the second's turn over the first's.
-
-    Attributes
-    ----------
-    links : two names
-        Of links; one of them may be "frame" (a fixed sun or ring).
-    carrier : "frame" or a link
-        The one that holds both axes.
-    ratio : float, not zero
-        Negative where they turn in opposite senses.
-    name : str
-        The gear's id where its links' names will not do.
-    """
-
-    links: Annotated[tuple[Name, ...], bounded_list(2)]
-    ratio: Annotated[float, PlainValidator(_read_ratio)]
-    carrier: Name = FRAME
-    name: Name | None = None
-
-    @property
-    def id(self) -> str:
-        """The gear's name, else its two links as "OA-wheel"."""
-        return self.name or "-".join(self.links)
 
 
 class Track(DescriptionPart):

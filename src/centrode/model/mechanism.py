@@ -11,7 +11,8 @@ from pydantic import model_validator
 from centrode.model.checks import problems_of_parts
 from centrode.model.description import Description
 from centrode.model.drives import Drive
-from centrode.model.links import Frame, Gear, Guide, Link, Rolling, Track
+from centrode.model.gears import Gear
+from centrode.model.links import Frame, Guide, Link, Rolling, Track
 from centrode.model.loads import AnyLoad
 from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems

@@ -58,12 +58,21 @@ from centrode.model.follower_cam import (
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
 from centrode.model.gear_pairs import FEWEST_TEETH, KIND, MOST_TEETH, PURPOSES, RACK, GearPair, Rack
+from centrode.model.gear_trains import FEWEST_TEETH as FEWEST_IN_TRAIN
+from centrode.model.gear_trains import KIND as TRAIN_KIND
+from centrode.model.gear_trains import (
+    MOST_PLANETS,
+    TRAIN_SCHEMES,
+    GearTrain,
+    MeshLosses,
+)
+from centrode.model.gear_trains import MOST_TEETH as MOST_IN_TRAIN
+from centrode.model.gears import Gear
 from centrode.model.links import (
     MASSES,
     RING_AND_POINT,
     SHAPES,
     Frame,
-    Gear,
     Guide,
     Link,
     PartMass,
@@ -279,7 +288,13 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "pole": _THROUGH,
         "radius": above_zero("arc"),
     },
-    Gear: {"links": _NAMES, "ratio": quantity_schema("ratio"), "carrier": NAME, "name": NAME},
+    Gear: {
+        "links": _NAMES,
+        "ratio": quantity_schema("ratio"),
+        "carrier": NAME,
+        "pair": {"anyOf": [NAME, {"type": "object"}]},
+        "name": NAME,
+    },
     Track: {
         "through": _COORDINATES,
         "direction": _DIRECTION,
@@ -724,3 +739,43 @@ GEAR_PAIR_PROPERTIES: dict[type[DescriptionPart], Schema] = {
 def gear_pair_schema() -> Schema:
     """JSON Schema (draft 2020-12) of the file of a pair of gears; what parts say about each other is not in it."""
     return schema_of("centrode gear pair", GearPair, GEAR_PAIR_PROPERTIES)
+
+
+# JSON Schema of the description of a train of gears.
+
+_TWO_TEETH: Schema = {
+    "type": "array",
+    "items": {"type": "integer", "minimum": FEWEST_IN_TRAIN, "maximum": MOST_IN_TRAIN},
+    "minItems": 2,
+    "maxItems": 2,
+}
+GEAR_TRAIN_PROPERTIES: dict[type[DescriptionPart], Schema] = {
+    Display: PROPERTIES[Display],
+    MeshLosses: {
+        "external": {"type": "number", "minimum": 0.5, "maximum": 1},
+        "internal": {"type": "number", "minimum": 0.5, "maximum": 1},
+    },
+    GearTrain: {
+        "title": TEXT,
+        "kind": {"const": TRAIN_KIND},
+        "display": reference_to(Display),
+        "scheme": {"enum": list(TRAIN_SCHEMES)},
+        "ratio": AMOUNT,
+        "input_speed": quantity_schema("angular speed"),
+        "output_speed": quantity_schema("angular speed"),
+        "pair_behind": _TWO_TEETH,
+        "driver": {"enum": ["sun", "carrier"]},
+        "planets": {"type": "integer", "minimum": 1, "maximum": MOST_PLANETS},
+        "module": above_zero("length"),
+        "teeth": _TWO_TEETH,
+        "tolerance": {"type": "number", "minimum": 0, "maximum": 0.2},
+        "mesh_efficiency": reference_to(MeshLosses),
+        "chosen": {"type": "integer", "minimum": 1, "maximum": 1000},
+    },
+}
+"""Keys of every part as a file spells them; a test compares them with the parts themselves."""
+
+
+def gear_train_schema() -> Schema:
+    """JSON Schema (draft 2020-12) of the file of a train of gears; what parts say about each other is not in it."""
+    return schema_of("centrode gear train", GearTrain, GEAR_TRAIN_PROPERTIES)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -102,9 +103,61 @@ def bare_angles_of(mapping: Mapping[str, Any]) -> BareAngles:
     return "radians" if angle == RAD else "refused"
 
 
-def is_cam(mapping: Mapping[str, Any]) -> bool:
-    """Whether a description says that it is a cam's."""
-    return mapping.get("kind") == "cam"
+@dataclass(frozen=True)
+class KindOfDescription:
+    """What a description may be of.
+
+    Attributes
+    ----------
+    described, wanted : "this describes a cam" and "not a cam", together a sentence about two kinds
+    repair : what computes it
+    """
+
+    described: str
+    wanted: str
+    repair: str
+
+
+KINDS: Mapping[str, KindOfDescription] = {
+    "linkage": KindOfDescription(
+        mark("this describes a linkage"),
+        mark("not a linkage"),
+        mark("compute it with: centrode run; in Python read it with read_mechanism"),
+    ),
+    "cam": KindOfDescription(
+        mark("this describes a cam"),
+        mark("not a cam"),
+        mark("compute it with: centrode cam; in Python read it with read_cam"),
+    ),
+    "gear pair": KindOfDescription(
+        mark("this describes a pair of gears"),
+        mark("not a pair of gears"),
+        mark("compute it with: centrode gears; in Python with gear_pair"),
+    ),
+    "gear train": KindOfDescription(
+        mark("this describes a train of gears"),
+        mark("not a train of gears"),
+        mark("compute it with: centrode trains; in Python with gear_train"),
+    ),
+}
+"""Kinds of descriptions; that of a linkage names none."""
+
+
+def description_kind(mapping: Mapping[str, Any]) -> str | None:
+    """The kind of description, a key of `KINDS`; None where neither its kind nor links say it."""
+    kind = mapping.get("kind")
+    if isinstance(kind, str) and kind in KINDS and kind != "linkage":
+        return kind
+    return "linkage" if "links" in mapping else None
+
+
+def refuse_other_kind(mapping: Mapping[str, Any], wanted: str, where: str = "") -> None:
+    """Raise InputError, with what computes it, where a description is of another kind than a wanted one."""
+    kind = description_kind(mapping)
+    if kind is not None and kind != wanted:
+        what = _("{described}, {wanted}")
+        described, other = _(KINDS[kind].described), _(KINDS[wanted].wanted)
+        raise InputError(where, what.format(described=described, wanted=other), _(KINDS[kind].repair))
 
 
 def with_unit(value: Any) -> Any:

@@ -17,7 +17,7 @@ from centrode.render.dxf_files import dxf_document
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles import CamOutline
+    from centrode.numerics.outline_pieces import OutlinePiece
     from centrode.scenes.places import Array
     from centrode.sheets.outlines import OutlineSet
 
@@ -62,7 +62,7 @@ STROKES: Mapping[str, OutlineStroke] = {
 }
 
 
-def group_by_layer(outlines: Sequence[CamOutline]) -> dict[str, list[CamOutline]]:
+def group_by_layer(outlines: Sequence[OutlinePiece]) -> dict[str, list[OutlinePiece]]:
     """Outlines by their layers, in the order of `STROKES`."""
     return {layer: found for layer in STROKES if (found := [one for one in outlines if one.layer == layer])}
 
@@ -88,7 +88,7 @@ CENTRE = 4.0
 """Half the length of the strokes of a centre mark [mm]."""
 
 
-def write_outlines_svg(outlines: Sequence[CamOutline], path: Path, title: str = "") -> None:
+def write_outlines_svg(outlines: Sequence[OutlinePiece], path: Path, title: str = "") -> None:
     """Write outlines as SVG, one millimetre a millimetre, y up, one group a layer, the centre marked.
 
     A piece goes through its points with its own slopes as cubic Bezier curves: between points an angle h apart it
@@ -112,10 +112,10 @@ def write_outlines_svg(outlines: Sequence[CamOutline], path: Path, title: str = 
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
-def _group(layer: str, pieces: Sequence[CamOutline]) -> list[str]:
+def _group(layer: str, pieces: Sequence[OutlinePiece]) -> list[str]:
     stroke: Mapping[str, object] = STROKES[layer].svg
     attributes = " ".join(f'{name}="{value}"' for name, value in stroke.items())
-    paths = [f'<path d="{bezier(1e3 * one.places, 1e3 * one.slopes, one.phi)}"/>' for one in pieces]
+    paths = [f'<path d="{bezier(1e3 * one.places, 1e3 * one.slopes, one.parameter)}"/>' for one in pieces]
     return [f'<g id="{layer}" {attributes}>', *paths, "</g>"]
 
 
@@ -148,7 +148,7 @@ CREASE = 1e-9
 """Pieces whose ends are nearer than this share of a metre are one polyline."""
 
 
-def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = "") -> None:
+def write_outlines_dxf(outlines: Sequence[OutlinePiece], path: Path, title: str = "") -> None:
     """Write outlines as DXF (AutoCAD 2010), one unit a millimetre.
 
     Each piece is a cubic spline through its points with its own slopes at both ends, on the layer of its name; the
@@ -174,9 +174,9 @@ def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = 
         _title(document, space, outlines, title)
 
 
-def _spline(space: Any, piece: CamOutline, layer: str) -> None:
+def _spline(space: Any, piece: OutlinePiece, layer: str) -> None:
     ends = 1e3 * piece.slopes[[0, -1]]
-    angles = piece.phi - piece.phi[0]  # knots that begin at 0: some readers know no others
+    angles = piece.parameter - piece.parameter[0]  # knots that begin at 0: some readers know no others
     curve = _interpolate().make_interp_spline(
         angles, 1e3 * piece.places, k=DEGREE, bc_type=([(1, ends[0])], [(1, ends[1])])
     )
@@ -186,7 +186,7 @@ def _spline(space: Any, piece: CamOutline, layer: str) -> None:
     )
 
 
-def _join_pieces(pieces: Sequence[CamOutline]) -> list[np.ndarray[Any, Any]]:
+def _join_pieces(pieces: Sequence[OutlinePiece]) -> list[np.ndarray[Any, Any]]:
     """Points [mm] of pieces, those end to end together."""
     found: list[np.ndarray[Any, Any]] = []
     for piece in pieces:
@@ -204,7 +204,7 @@ def _centre(document: Any, space: Any) -> None:
         space.add_line((-end[0], -end[1]), end, dxfattribs={"layer": "centre"})
 
 
-def _title(document: Any, space: Any, outlines: Sequence[CamOutline], title: str) -> None:
+def _title(document: Any, space: Any, outlines: Sequence[OutlinePiece], title: str) -> None:
     if not title:
         return
     document.layers.add("title", color=7)

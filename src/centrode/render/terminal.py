@@ -128,7 +128,14 @@ def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[
     heads = [_head(column, spelling) for column in table.columns]
     cells = [
         [
-            spelling.text(Number(value, column.units[row] if column.units else column.unit, unit_hidden=True))
+            spelling.text(
+                Number(
+                    value,
+                    column.units[row] if column.units else column.unit,
+                    unit_hidden=True,
+                    unit_fixed=column.unit_fixed,
+                )
+            )
             if isinstance(value, float)
             else spelling.text(value)
             for row, value in enumerate(column.values)
@@ -146,7 +153,7 @@ def symbol_texts(symbol: ExplainedSymbol, spelling: PlainSpelling) -> tuple[str,
 def _head(column: Column, spelling: PlainSpelling) -> str:
     """What a column holds, with the unit that is shown behind it."""
     name = spelling.text(column.head) or column.name
-    unit = spelling.label_of(spelling.shown_unit(Number(0.0, column.unit))[1])
+    unit = spelling.label_of(spelling.shown_unit(Number(0.0, column.unit, unit_fixed=column.unit_fixed))[1])
     return f"{name}, {unit}" if unit else name
 
 

@@ -15,17 +15,20 @@ from centrode.dynamics.force_polygons.results import force_polygon_results, has_
 from centrode.dynamics.kinetostatics.reactions import motion_of_forces
 from centrode.dynamics.steady_motion.machine import is_machine, machine_results
 from centrode.errors import CentrodeError, InputError
+from centrode.gears.results import gear_pair
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.cam_files import has_follower, require_curvature_cam, with_follower
 from centrode.model.examples.catalogue import description_of
 from centrode.model.explanatory_note import TitlePage
+from centrode.model.gear_pairs import GearPair
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import FRAME
 from centrode.scenes.driving_cams import driving_body
 from centrode.sheets.drawing_sheets import DrawingSet, TitleBlock
 from centrode.views.cam_sheets import cam_sheet, driving_cam_sheet
 from centrode.views.drawing_sheets import diagram_sheet, energy_sheet, force_sheets, motion_sheets
+from centrode.views.gear_sheets import gear_sheet
 from centrode.views.path_sheets import path_sheet
 
 if TYPE_CHECKING:
@@ -38,7 +41,7 @@ SHORT = 60
 
 
 def drawing_sheets(
-    description: DescriptionSource,
+    description: DescriptionSource | GearPair,
     *,
     instants: Sequence[float | str] | float | str = (),
     positions: int = USUAL,
@@ -47,11 +50,11 @@ def drawing_sheets(
     """Sheets A1 of a mechanism: its motion; where they are described, its cams, machine and forces; or of a cam.
 
     Of a mechanism on the sphere they show the diagrams of its output and of its machine; `absent` names the drawings
-    that are of the plane. Of a cam one sheet shows the synthesis.
+    that are of the plane. Of a cam one sheet shows the synthesis, of a pair of gears teeth, generation and sliding.
 
     Parameters
     ----------
-    description : Mechanism, PlateCam or Cam, or the name of its file or of a built-in one
+    description : Mechanism, PlateCam, Cam or GearPair, or the name of its file or of a built-in one
     instants : values of the drive [rad or m], times [s], or texts with a unit, at which plans of vectors and forces
         are drawn; those of the study by default, else the initial position
     positions, link : as of `plan_of_positions`; of a cam about so many positions stand on its rises and returns
@@ -70,6 +73,9 @@ def drawing_sheets(
     >>> [type(sheet).__name__ for sheet in made.sheets]
     ['MotionSheet']
     """
+    if isinstance(description, GearPair):
+        block = TitleBlock("", _(description.title), "", "", (), "")
+        return DrawingSet(block, (gear_sheet(gear_pair(description)),))
     description = description_of(description)
     if not isinstance(description, Mechanism):
         return cam_sheets(description, instants=instants, positions=positions, link=link)

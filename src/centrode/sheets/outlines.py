@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from centrode.sheets.texts import Sentence, Text, Title
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles import CamOutline
     from centrode.cams.walking_wheel import WheelMover
+    from centrode.numerics.outline_pieces import OutlinePiece
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class OutlineSet:
     """
 
     title: Title
-    pieces: tuple[CamOutline, ...]
+    pieces: tuple[OutlinePiece, ...]
 
 
 class LineUse(Enum):
@@ -162,7 +162,7 @@ class OutlineDrawing:
 
     title: Sentence
     mechanism: Title
-    pieces: tuple[CamOutline, ...]
+    pieces: tuple[OutlinePiece, ...]
     layers: Mapping[str, Text]
     shapes: tuple[Shape, ...]
     centre: Text

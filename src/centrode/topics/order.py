@@ -33,6 +33,7 @@ COMMANDS = (
     "cam",
     "gears",
     "synthesise",
+    "trains",
     "centres",
     "centrodes",
     "diagrams",

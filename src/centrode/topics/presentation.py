@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from centrode.model.cam_files import AnyCam
     from centrode.model.gear_pairs import GearPair
+    from centrode.model.gear_trains import GearTrain
     from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet, Table
 
@@ -137,13 +138,13 @@ def display_of(result: Any) -> Display:
     return description_of(result).display
 
 
-def description_of(result: Any) -> Mechanism | AnyCam | GearPair:
-    """The mechanism, the cam or the pair of gears that a result knows."""
+def description_of(result: Any) -> Mechanism | AnyCam | GearPair | GearTrain:
+    """The mechanism, the cam, the pair or the train of gears that a result knows."""
     dataset = result.dataset if isinstance(result, Result) else result
     if is_result(dataset):
         return _parsed_description(dataset)
-    known = (getattr(result, name, None) for name in ("mechanism", "cam", "gear_pair"))
-    return cast("Mechanism | AnyCam | GearPair", next(one for one in known if one is not None))
+    known = (getattr(result, name, None) for name in ("mechanism", "cam", "gear_pair", "gear_train"))
+    return cast("Mechanism | AnyCam | GearPair | GearTrain", next(one for one in known if one is not None))
 
 
 def summary(result: Any) -> str:

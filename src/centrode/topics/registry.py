@@ -1163,6 +1163,14 @@ SYNTHESIS = Topic(
     subject="synthesis",
 )
 
+GEAR_TRAIN = Topic(
+    name="gear-train",
+    compute=Lazily("centrode.gears.train_results", "gear_train"),
+    result=Lazily("centrode.gears.train_results", "GearTrainResults"),
+    view=Lazily("centrode.views.gear_train", "sheet"),
+    subject="gear train",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -1180,6 +1188,7 @@ TOPICS: tuple[Topic, ...] = (
     MOTION_LAWS,
     GEAR_PAIR,
     SYNTHESIS,
+    GEAR_TRAIN,
     ROTATABILITY,
     REPAIR,
     FORCE_POLYGONS,

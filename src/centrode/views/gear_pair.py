@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.profiles import CamOutline
 from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
-from centrode.gears.profiles import turned_pieces
+from centrode.gears.profiles import whole_tooth
+from centrode.gears.racks import rack_positions, rack_tooth
+from centrode.locale import mark
+from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing, OutlineSet
 from centrode.sheets.plots import (
     Abscissa,
@@ -45,8 +47,9 @@ from centrode.sheets.texts import (
 )
 
 if TYPE_CHECKING:
+    from centrode.gears.pair_faults import FaultKind
     from centrode.gears.pair_geometry import PairGeometry
-    from centrode.gears.profiles import ProfilePiece, ToothProfile
+    from centrode.gears.profiles import ToothProfile
     from centrode.gears.results import GearPairResults
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -59,12 +62,14 @@ PURPOSES = {
     "strength": Sentence("chosen for the flattest flanks at the pitch point"),
 }
 CURVES = {
+    "mesh": Sentence("no mesh without play"),
     "undercut_1": Sentence("undercut of the pinion"),
     "undercut_2": Sentence("undercut of the wheel"),
     "interference_1": Sentence("interference at the pinion's fillet"),
     "interference_2": Sentence("interference at the wheel's fillet"),
     "pointed_1": Sentence("pointed teeth of the pinion"),
     "pointed_2": Sentence("pointed teeth of the wheel"),
+    "tips": Sentence("tips run into each other"),
     "contact_ratio_1": Sentence("contact ratio of one"),
     "contact_ratio_1.2": Sentence("contact ratio {ratio}", ratio=Number(LEAST_CONTACT_RATIO)),
     "tip_0.25_1": Sentence("tips of the pinion: {share} modules", share=Number(LEAST_TIP_THICKNESS)),
@@ -81,7 +86,7 @@ MOST_SLIDING = 12.0
 
 def sheet(results: GearPairResults) -> Sheet:
     """Everything there is to say about a pair of wheels."""
-    contour = results.contour is not None
+    contour = results.geometry.kind != "rack"
     return Sheet(
         facts=tuple(_facts(results)),
         scalars=_scalars(results),
@@ -96,6 +101,7 @@ def sheet(results: GearPairResults) -> Sheet:
             {
                 "mesh": lambda: _mesh(results),
                 "sliding": lambda: _sliding(results),
+                "generation": lambda: _generation(results),
                 **({"blocking-contour": lambda: _contour(results)} if contour else {}),
             }
         ),
@@ -155,7 +161,12 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
             total=Number(pair.overlap_ratio + pair.contact_ratio),
         )
         yield Fact(Sentence("overlap ratio"), total)
-    pinion, wheel = (Number(one.sliding, digits=".4g") for one in pair.wheels)
+    clearances = Joined(tuple(Number(one.radial_clearance, "m") for one in pair.wheels), "; ")
+    yield Fact(Sentence("radial clearance at the tips"), clearances)
+    pinion, wheel = (
+        Sentence("unbounded") if one.sliding_is_unbounded else Number(one.sliding, digits=".4g")
+        for one in pair.wheels
+    )
     sliding = Sentence("pinion {pinion}, {second} {wheel}", pinion=pinion, wheel=wheel, second=_second(pair))
     yield Fact(Sentence("greatest specific sliding"), sliding)
     if results.output_speed is not None:
@@ -300,23 +311,43 @@ def _contour_table(results: GearPairResults) -> Table:
 # What is wrong
 
 
+_ADVICE = Sentence("choose other shifts: those of least sliding satisfy all bounds where that is possible")
+FAULTS: Mapping[FaultKind, tuple[str, Sentence]] = {
+    "tip inside base": (
+        mark("{wheel}: its tips lie inside the base circle, where there is no involute"),
+        Sentence("raise its shift or its number of teeth"),
+    ),
+    "no clearance": (mark("{wheel}: its tips reach the root of the other one"), _ADVICE),
+    "contact ratio": (
+        mark("the contact ratio {ratio} is below one"),
+        Sentence("reduce the sum of the shifts, or raise the numbers of teeth"),
+    ),
+    "pointed": (mark("{wheel}: the teeth are pointed below their tip"), Sentence("reduce its shift")),
+    "fillet": (mark("{wheel}: the tips of the other one run into its fillets"), _ADVICE),
+    "tips": (
+        mark("the tips of both wheels run into each other as they leave mesh"),
+        Sentence("enlarge the difference of the numbers of teeth, or the shifts"),
+    ),
+    "contact after undercut": (
+        mark("undercut leaves a contact ratio of {left}, which is below one"),
+        Sentence("raise the shift of the undercut wheel"),
+    ),
+}
+"""What is said of each fault, and what helps; the holes are the wheel and both contact ratios."""
+
+
 def _failure(results: GearPairResults) -> Failure | None:
-    """Why the pair cannot work."""
+    """Why the pair cannot work: its first fault."""
     pair = results.geometry
-    names = (PINION, _second(pair))
-    advice = Sentence("choose other shifts: those of least sliding satisfy all bounds where that is possible")
-    if not pair.contact_ratio >= 1:
-        what = Sentence(
-            "the contact ratio {ratio} is below one", ratio=Number(pair.contact_ratio, digits=".4g")
-        )
-        return Failure(what, Sentence("reduce the sum of the shifts, or raise the numbers of teeth"))
-    for wheel, name in zip(pair.wheels, names, strict=True):
-        if not wheel.tip_thickness > 0:
-            what = Sentence("{wheel}: the teeth are pointed below their tip", wheel=name)
-            return Failure(what, Sentence("reduce its shift"))
-        if wheel.interferes:
-            what = Sentence("{wheel}: the tips of the other one run into its fillets", wheel=name)
-            return Failure(what, advice)
+    for fault in results.faults:
+        message, repair = FAULTS[fault.kind]
+        parts: dict[str, Text] = {
+            "wheel": (PINION, _second(pair))[fault.wheel or 0],
+            "ratio": Number(pair.contact_ratio, digits=".4g"),
+            "left": Number(results.true_contact_ratio, digits=".4g"),
+        }
+        holes = {name: part for name, part in parts.items() if f"{{{name}}}" in message}
+        return Failure(Sentence(message, **holes), repair)
     return None
 
 
@@ -326,9 +357,14 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
     for wheel, name in zip(pair.wheels, (PINION, _second(pair)), strict=True):
         if wheel.undercut:
             yield Sentence(
-                "{wheel}: undercut; without undercut the shift is at least {least}",
+                "{wheel}: undercut; without it the shift is at least {least}, or the number of teeth {teeth}",
                 wheel=name,
                 least=Number(wheel.least_shift, digits=".5g"),
+                teeth=Number(math.ceil(wheel.least_teeth)),
+            )
+        if wheel.sliding_is_unbounded:
+            yield Sentence(
+                "{wheel}: contact reaches its base circle, where sliding grows without bound", wheel=name
             )
         if 0 < wheel.tip_thickness < LEAST_TIP_THICKNESS * pair.module:
             yield Sentence(
@@ -337,7 +373,7 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
                 share=Number(wheel.tip_thickness / pair.module, digits=".3g"),
                 least=Number(LEAST_TIP_THICKNESS),
             )
-    if 1 <= results.true_contact_ratio + pair.overlap_ratio < LEAST_CONTACT_RATIO:
+    if 1 <= results.true_contact_ratio < LEAST_CONTACT_RATIO:
         yield Sentence("the contact ratio is below the usual {least}", least=Number(LEAST_CONTACT_RATIO))
 
 
@@ -347,71 +383,104 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
 def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
     """All teeth of a wheel about its axis."""
     pieces = [
-        _piece(piece, "profile")
+        piece.on_layer("profile").moved(2 * math.pi * tooth / profile.teeth)
         for tooth in range(profile.teeth)
-        for piece in turned_pieces(profile, 2 * math.pi * tooth / profile.teeth)
+        for piece in whole_tooth(profile)
     ]
     return OutlineSet(Title(results.gear_pair.title), tuple(pieces))
 
 
-def _piece(piece: ProfilePiece, layer: str) -> CamOutline:
-    sign = 1.0 if piece.parameter[0] < piece.parameter[-1] else -1.0
-    return CamOutline(layer, sign * piece.parameter, piece.places, sign * piece.slopes)  # type: ignore[arg-type]
-
-
-def _mesh(results: GearPairResults) -> OutlineDrawing:
-    """The teeth about the pitch point, with the circles and the line of action."""
+def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array], Array]:
+    """Teeth about the pitch point, arcs of the working pitch circles, and both ends of the active line of action."""
     pair = results.geometry
-    pieces: list[CamOutline] = []
-    centres = [(0.0, 0.0)]
-    radius = pair.wheels[0].working_pitch / 2
+    pieces: list[OutlinePiece] = []
+    circles: list[Array] = []
     for number, profile in enumerate(results.profiles):
         step = 2 * math.pi / profile.teeth
-        centre, half, turn = (0.0, 0.0), 0.0, 0.0
+        centre, half, turn, up = (0.0, 0.0), 0.0, 0.0, 1
         if number:
             # A gap of the wheel takes the pinion's tooth: below its centre where it is external, above where internal.
             centre = (0.0, pair.sign * pair.centre_distance)
-            half, turn = step / 2, math.pi if pair.sign > 0 else 0.0
-            centres.append(centre)
+            half, turn, up = step / 2, math.pi if pair.sign > 0 else 0.0, -pair.sign
         shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
         # The gap of the wheel lies in the middle: as many teeth on either side.
         for tooth in range(-shown, shown + 1 - number):
             angle = turn + half + tooth * step
             pieces += [
-                _piece(piece, ("profile", "shoe")[number]) for piece in turned_pieces(profile, angle, centre)
+                piece.on_layer(("profile", "shoe")[number]).moved(angle, centre)
+                for piece in whole_tooth(profile)
             ]
-    shapes = []
-    if pair.kind == "rack":
-        shapes.append(DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (_rack_line(pair),)))
-    else:
-        circles = [
-            _arc(centre, wheel.working_pitch / 2, up)
-            for centre, wheel, up in zip(centres, pair.wheels, (1, -pair.sign), strict=True)
-        ]
-        shapes.append(DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles)))
+        circles.append(_arc(centre, pair.wheels[number].working_pitch / 2, up, (shown + 0.5) * step))
     begin, end = pair.action_ends
     middle, angle = pair.pitch_curvature_radius, pair.working_angle
     # The contact moves with the driven flank: along the inner tangent of both base circles through the pitch point.
     direction = np.array([-math.cos(angle), math.sin(angle)])
-    ends = np.array([[0.0, radius]]) + np.outer(np.array([max(begin, 0.0), end]) - middle, direction)
-    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (ends,)))
-    layers = {"profile": PINION, "shoe": WHEEL} if pair.kind != "rack" else {"profile": PINION}
+    pitch = np.array([[0.0, pair.wheels[0].working_pitch / 2]])
+    return pieces, circles, pitch + np.outer(np.array([max(begin, 0.0), end]) - middle, direction)
+
+
+def _mesh(results: GearPairResults) -> OutlineDrawing:
+    """The teeth about the pitch point, with the circles and the line of action."""
+    pair = results.geometry
+    pieces, circles, action = mesh_parts(results)
+    if pair.kind == "rack":
+        shapes = [DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (rack_line(pair),))]
+    else:
+        shapes = [DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles))]
+    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (action,)))
     return OutlineDrawing(
         Sentence("Teeth in mesh"),
         Title(results.gear_pair.title),
         tuple(pieces),
-        layers,
+        {"profile": PINION, "shoe": WHEEL} if pair.kind != "rack" else {"profile": PINION},
         tuple(shapes),
         Sentence("axis of the pinion"),
     )
 
 
-def _arc(centre: tuple[float, float], radius: float, up: int) -> Array:
-    angles = np.linspace(-0.6, 0.6, 121)
+ROLLED = 0.75
+"""Positions of the rack reach this share of a turn of two teeth to either side."""
+POSITIONS = 17
+
+
+def generation_parts(results: GearPairResults) -> tuple[list[OutlinePiece], tuple[Array, ...]]:
+    """Teeth of the pinion beside a gap on the y axis, and the positions of the rack's tooth that cuts the gap."""
+    pair, profile = results.geometry, results.profiles[0]
+    wheel, step = pair.wheels[0], 2 * math.pi / profile.teeth
+    teeth = [
+        piece.on_layer("profile").moved(side * step / 2) for side in (-1, 1) for piece in whole_tooth(profile)
+    ]
+    # The rack meets the tips where it has rolled by about the angle of a tooth and a half.
+    rolled = np.linspace(-1.0, 1.0, POSITIONS) * ROLLED * 2 * step
+    outline = rack_tooth(pair.transverse, wheel.shift * pair.module)
+    return teeth, tuple(rack_positions(outline, wheel.pitch / 2, rolled))
+
+
+def _generation(results: GearPairResults) -> OutlineDrawing:
+    """How the rack generates a gap of the pinion: its positions as it rolls. Undercut is where they cross a flank."""
+    teeth, positions = generation_parts(results)
+    pitch = results.geometry.wheels[0].pitch / 2
+    circle = _arc((0.0, 0.0), pitch, 1, 2 * math.pi / results.profiles[0].teeth)
+    return OutlineDrawing(
+        Sentence("Generation by the rack"),
+        Title(results.gear_pair.title),
+        tuple(teeth),
+        {"profile": PINION},
+        (
+            DrawnLines(LineUse.NORMAL, Sentence("positions of the rack"), positions),
+            DrawnLines(LineUse.AXIS, Sentence("pitch circle"), (circle,)),
+        ),
+        Sentence("axis of the pinion"),
+    )
+
+
+def _arc(centre: tuple[float, float], radius: float, up: int, half: float) -> Array:
+    """An arc over or below a centre [m], by so much [rad] to either side."""
+    angles = np.linspace(-half, half, 121)
     return np.stack([centre[0] + radius * np.sin(angles), centre[1] + up * radius * np.cos(angles)], axis=-1)
 
 
-def _rack_line(pair: PairGeometry) -> Array:
+def rack_line(pair: PairGeometry) -> Array:
     """Teeth of the rack whose gap takes the pinion's tooth."""
     module, angle = pair.transverse.module, pair.transverse.pressure_angle
     line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module
@@ -467,8 +536,8 @@ def _sliding(results: GearPairResults) -> Plot:
     places = []
     if action.single is not None:
         places = [
-            (Sentence("one pair bears from here"), action.single[0]),
-            (Sentence("one pair bears up to here"), action.single[1]),
+            (Sentence("one pair from here"), action.single[0]),
+            (Sentence("one pair to here"), action.single[1]),
         ]
     return Plot(
         Sentence("Sliding along the line of action"),

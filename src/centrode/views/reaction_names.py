@@ -100,6 +100,8 @@ def reaction_text(reaction: ReactionSeries | BearingLoad) -> Text:
             return Sentence("gear {name}, on {body}", name=name, body=GEAR_BODIES[names[1]])
         case ReactionKind.TOOTH_FORCE:
             return Sentence("gear {name}, teeth", name=name)
+        case ReactionKind.TOOTH_RADIAL_FORCE:
+            return Sentence("gear {name}, teeth, radial", name=name)
         case ReactionKind.ROLLING_NORMAL:
             return Sentence("wheel {name}, normal", name=name)
         case ReactionKind.ROLLING_TANGENTIAL:

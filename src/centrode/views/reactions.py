@@ -94,6 +94,7 @@ VARIABLES = (
     "guide_moment",
     "gear_moment",
     "tooth_force",
+    "tooth_radial_force",
     "rolling_force",
     "rolling_normal",
     "rolling_tangential",

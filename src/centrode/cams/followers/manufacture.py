@@ -14,11 +14,12 @@ import xarray as xr
 from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.geometry import Array, Corner, Face, FollowerCam, FollowerContact
 from centrode.cams.nodes import inside
-from centrode.cams.profiles import CamOutline, Layer
+from centrode.cams.profiles import Layer
 from centrode.errors import InputError
 from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
+from centrode.numerics.outline_pieces import OutlinePiece
 
 LEAST_SPACES = 8
 """Least number of spaces between the points of a piece."""
@@ -122,7 +123,7 @@ class _Layer:
 
 def follower_outlines(
     cam: FollowerCam, tolerance: float = 1e-6, cutter: float | None = None
-) -> list[CamOutline]:
+) -> list[OutlinePiece]:
     """The profile, the path of a roller's centre and that of a cutter's, each in smooth pieces end to end.
 
     Parameters
@@ -150,7 +151,7 @@ def follower_outlines(
         layers.append(_Layer("cutter", cutter))
     corners = {one.at: one for one in cam.corners}
     pieces = chord_pieces(cam, tolerance, cutter or 0.0)
-    found: list[CamOutline] = []
+    found: list[OutlinePiece] = []
     for layer in layers:
         for (start, _stop), phi in zip(pairwise(cam.edges), pieces, strict=True):
             if start in corners:
@@ -159,12 +160,12 @@ def follower_outlines(
             places = contact.place + layer.away * contact.normal
             speed = cutter_speed(cam, contact, layer.away)
             found.append(
-                CamOutline(layer.name, phi, places, speed[:, None] * contact.tangent, contact.normal)
+                OutlinePiece(layer.name, phi, places, speed[:, None] * contact.tangent, contact.normal)
             )
     return found
 
 
-def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -> Iterator[CamOutline]:
+def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -> Iterator[OutlinePiece]:
     """What joins both sides of a corner, where they part."""
     before = _before(cam, corner.at)
     if corner.step > 0.0:
@@ -174,7 +175,7 @@ def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -
         places = start + along[:, None] * slopes
         normals = np.broadcast_to(before.normal[0], slopes.shape)
         size = cam.base_radius
-        yield CamOutline(layer.name, corner.at + along / size, places, size * slopes, normals)
+        yield OutlinePiece(layer.name, corner.at + along / size, places, size * slopes, normals)
     # seen from the roller's centre, about which the normal turns
     distance = layer.away - (0.0 if isinstance(cam.touch, Face) else cam.touch.roller)
     if distance * corner.turn > 0.0:
@@ -186,7 +187,7 @@ def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -
         outwards = np.stack([np.sin(normal), np.cos(normal)], axis=-1)
         along = np.stack([np.cos(normal), -np.sin(normal)], axis=-1)
         places = before.centre[0] + distance * outwards
-        yield CamOutline(layer.name, corner.at + turned, places, sense * distance * along, outwards)
+        yield OutlinePiece(layer.name, corner.at + turned, places, sense * distance * along, outwards)
 
 
 def _before(cam: FollowerCam, at: float) -> FollowerContact:
@@ -195,7 +196,7 @@ def _before(cam: FollowerCam, at: float) -> FollowerContact:
     return cam.contact(np.array([inside(cam.edges[0], end)[1]]))
 
 
-def join_outlines(outlines: list[CamOutline], layer: Layer) -> Array:
+def join_outlines(outlines: list[OutlinePiece], layer: Layer) -> Array:
     """All points (n, 2) [m] of a layer in their order, those where pieces meet once."""
     found: list[Array] = []
     for one in outlines:
@@ -271,7 +272,7 @@ def cam_points(cam: AnyCam) -> xr.Dataset:
     return points_dataset(follower_outlines(follower_cam(plate), plate.study.chord_tolerance, cutter))
 
 
-def points_dataset(outlines: Sequence[CamOutline]) -> xr.Dataset:
+def points_dataset(outlines: Sequence[OutlinePiece]) -> xr.Dataset:
     """`cam_points` of outlines that are known."""
     curves: list[str] = []
     angles, places, normals = [], [], []
@@ -279,8 +280,8 @@ def points_dataset(outlines: Sequence[CamOutline]) -> xr.Dataset:
         # where pieces meet the point is told once
         again = number > 0 and outlines[number - 1].layer == one.layer
         fresh = slice(1 if again and _meet(outlines[number - 1], one) else 0, None)
-        curves += [one.layer] * len(one.phi[fresh])
-        angles.append(one.phi[fresh])
+        curves += [one.layer] * len(one.parameter[fresh])
+        angles.append(one.parameter[fresh])
         places.append(one.places[fresh])
         normals.append(np.asarray(one.normals)[fresh])
     variables: dict[str, Variable] = {
@@ -292,5 +293,5 @@ def points_dataset(outlines: Sequence[CamOutline]) -> xr.Dataset:
     return xr.Dataset(variables, coords={"axis": AXES})
 
 
-def _meet(one: CamOutline, two: CamOutline) -> bool:
+def _meet(one: OutlinePiece, two: OutlinePiece) -> bool:
     return bool(np.hypot(*(one.places[-1] - two.places[0])) < 1e-12)

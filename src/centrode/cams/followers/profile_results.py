@@ -21,10 +21,10 @@ from centrode.cams.followers.manufacture import (
 )
 from centrode.cams.followers.motion import derivative, extremes_of, follower_motion, greatest_size
 from centrode.cams.nodes import nodes_of
-from centrode.cams.profiles import CamOutline
 from centrode.cams.roller_path import FEWEST, angles_of, in_order_of
 from centrode.model.cam_files import AnyCam, with_follower
 from centrode.model.follower_cam import PlateCam
+from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.numerics.search import roots
 
 Array = npt.NDArray[np.float64]
@@ -48,7 +48,7 @@ class FollowerProfileResults:
 
     cam: PlateCam
     body: FollowerCam
-    outlines: tuple[CamOutline, ...]
+    outlines: tuple[OutlinePiece, ...]
     dataset: xr.Dataset
     points: xr.Dataset
     greatest_radius: float

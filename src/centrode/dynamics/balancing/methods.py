@@ -37,7 +37,7 @@ from centrode.dynamics.balancing.shaking_forces import (
 from centrode.dynamics.state import Mass
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.model.links import Gear
+from centrode.model.gears import Gear
 from centrode.model.mechanism import Link, Mechanism
 
 # Full balance of the shaking force: the common centre of mass is brought to rest.

@@ -28,6 +28,7 @@ class ReactionKind(Enum):
     GUIDE_MOMENT = "guide_moment"  # guide
     GEAR_MOMENT = "gear_moment"  # gear, "first", "second" or "carrier"
     TOOTH_FORCE = "tooth_force"  # gear
+    TOOTH_RADIAL_FORCE = "tooth_radial_force"  # gear
     ROLLING_NORMAL = "rolling_normal"  # wheel
     ROLLING_TANGENTIAL = "rolling_tangential"  # wheel
     BALANCING = "balancing"  # drive
@@ -67,6 +68,7 @@ ALONG = (
     (ReactionKind.GUIDE_MOMENT, "guide"),
     (ReactionKind.GEAR_MOMENT, "gear"),
     (ReactionKind.TOOTH_FORCE, "gear"),
+    (ReactionKind.TOOTH_RADIAL_FORCE, "gear"),
     (ReactionKind.ROLLING_NORMAL, "rolling"),
     (ReactionKind.ROLLING_TANGENTIAL, "rolling"),
     (ReactionKind.BALANCING, "drive"),

@@ -251,6 +251,8 @@ def _refuse_untraceable(solved: Solved, paths: Sequence[str]) -> None:
     mechanism = solved.ready.mechanism
     if mechanism.space == "sphere":
         raise Untraceable(mark("reactions on the sphere"))
+    if any(gear.pair for gear in mechanism.gears):
+        raise Untraceable(mark("radial forces of teeth"))
     if contacts_of(mechanism):
         raise Untraceable(mark("friction that depends on reactions"))
     burden = MassesAndLoads.for_reactions(mechanism)

@@ -53,6 +53,7 @@ from centrode.dynamics.kinetostatics.joints import (
     tables,
     undetermined_parts,
 )
+from centrode.dynamics.kinetostatics.radial_forces import with_radial_forces
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State
 from centrode.dynamics.steady_motion.steady import solution_of
@@ -134,7 +135,8 @@ def find(
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
     undetermined = undetermined_parts(system, sides, status, residual)
-    solution = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
+    parts = with_radial_forces(reactions_of(forces, sides), forces, sides)
+    solution = ReactionSolution(pace, outer, forces, sides, parts, undetermined, status)
     return _with_friction(solution, solved, burden, state, contacts) if contacts else solution
 
 
@@ -151,7 +153,7 @@ def _with_friction(
         (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
     )
     forces = found.forces.system.forces(outer.pulls)
-    parts = reactions_of(forces, found.sides)
+    parts = with_radial_forces(reactions_of(forces, found.sides), forces, found.sides)
     with_friction(parts, sizes, state)
     status = found.status.copy()
     status[sizes.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
@@ -401,6 +403,7 @@ DIMENSIONS = {
     "guide_moment": ("guide",),
     "gear_moment": ("gear", "gear_body"),
     "tooth_force": ("gear", "axis"),
+    "tooth_radial_force": ("gear", "axis"),
     "rolling_force": ("rolling", "axis"),
     "rolling_normal": ("rolling",),
     "rolling_tangential": ("rolling",),
@@ -531,6 +534,7 @@ def _names(found: ReactionSolution) -> dict[str, list[str]]:
         "guide_moment": [f"moment of guide {guide}" for guide in guides],
         "gear_moment": gears,
         "tooth_force": gears,
+        "tooth_radial_force": gears,
         "rolling_force": wheels,
         "rolling_normal": wheels,
         "rolling_tangential": wheels,

@@ -9,12 +9,17 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 DIRECTORY = Path(__file__).parent
-FOLDERS = {"linkage": DIRECTORY, "cam": DIRECTORY / "cams", "gear pair": DIRECTORY / "gears"}
+FOLDERS = {
+    "linkage": DIRECTORY,
+    "cam": DIRECTORY / "cams",
+    "gear pair": DIRECTORY / "gears",
+    "gear train": DIRECTORY / "trains",
+}
 """Where the descriptions of each kind lie."""
 
 
 def example_names(kind: str = "linkage") -> tuple[str, ...]:
-    """Names of the built-in mechanisms of a kind, "linkage", "cam" or "gear pair", sorted.
+    """Names of the built-in mechanisms of a kind, "linkage", "cam", "gear pair" or "gear train", sorted.
 
     Examples
     --------

@@ -1,0 +1,205 @@
+"""A train of gears as a mechanism that moves: axes, wheels with a mark, carriers; alone, or before a machine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from centrode.errors import InputError
+from centrode.gears.planetary_trains import CarrierSeries, OrdinaryTrain, PlanetaryTrain
+from centrode.gears.train_results import GearTrainResults
+from centrode.locale import _
+from centrode.model.examples.catalogue import MechanismSource, mechanism_of
+from centrode.model.files import document, mechanism_from
+from centrode.model.mechanism import Mechanism
+
+USUAL_SPEED = math.tau
+"""Of what drives where none is given [rad/s]: a turn in a second."""
+MOST_TURNS = 200
+"""Of what drives, over which a train alone is shown."""
+AXIS, CRANK_AXIS, CRANK = "M", "N", "crank"
+
+
+class _Parts:
+    """Points, links and gears of a mechanism while it is put together.
+
+    The main axis is the point M; wheel n has the mark Wn, carrier n ends in An, planet n has the mark Pn.
+    """
+
+    def __init__(self, module: float, axis: tuple[float, float] = (0.0, 0.0)) -> None:
+        self.radius = module / 2
+        self.axis = axis
+        self.points: dict[str, Any] = {AXIS: list(axis)}
+        self.links: dict[str, Any] = {}
+        self.gears: list[dict[str, Any]] = []
+
+    def wheel(self, name: str, centre: str, mark: str, teeth: int) -> None:
+        """A wheel about a point, with a mark on its pitch circle."""
+        points = {centre: [0.0, 0.0], mark: [teeth * self.radius, 0.0]}
+        self.links[name] = {"points": points, "angle": 0.0}
+
+    def gear(self, first: str, second: str, ratio: float, carrier: str = "frame") -> None:
+        """A gear between two links."""
+        self.gears.append({"links": [first, second], "ratio": ratio, "carrier": carrier})
+
+    def planetary_stage(self, train: PlanetaryTrain, sun: str, number: int) -> str:
+        """A planetary stage of which one planet stands for all; returns its carrier."""
+        scheme = train.scheme
+        own, planet, other, fixed = train.teeth
+        carrier, rolling, end = f"carrier-{number}", f"planet-{number}", f"A{number}"
+        if sun not in self.links:
+            self.wheel(sun, AXIS, f"W{number}", own)
+        arm = {AXIS: [0.0, 0.0], end: [train.arms[0] * self.radius, 0.0]}
+        self.links[carrier] = {"points": arm, "angle": 0.0}
+        self.wheel(rolling, end, f"P{number}", max(planet, other))
+        self.gear(sun, rolling, scheme.sun * own / planet, carrier)
+        self.gear(rolling, "frame", scheme.fixed * other / fixed, carrier)
+        return carrier
+
+    def shaft(self, driving: str, number: int, teeth: tuple[int, int], along: float) -> float:
+        """A shaft that an external wheel drives, on an axis to the right; returns how far that lies from the first."""
+        there = along + sum(teeth) * self.radius
+        centre, name = f"{AXIS}{number}", f"shaft-{number}"
+        self.points[centre] = [self.axis[0] + there, self.axis[1]]
+        self.wheel(name, centre, f"W{number}", teeth[1])
+        self.gear(driving, name, -teeth[0] / teeth[1])
+        return there
+
+    def train(self, results: GearTrainResults) -> tuple[str, str, float]:
+        """All of the chosen train: what drives, what is driven, and how far that lies from the main axis."""
+        train = results.chosen
+        if isinstance(train, OrdinaryTrain):
+            self.wheel("shaft-1", AXIS, "W1", train.pairs[0][0])
+            along = 0.0
+            for number, teeth in enumerate(train.pairs, 2):
+                along = self.shaft(f"shaft-{number - 1}", number, teeth, along)
+            return "shaft-1", f"shaft-{len(train.pairs) + 1}", along
+        stages = train.stages if isinstance(train, CarrierSeries) else (train,)
+        last = "wheel-1"
+        for number, stage in enumerate(stages, 1):
+            last = self.planetary_stage(stage, last, number)
+        if stages[0].driver == "carrier":
+            return last, "wheel-1", 0.0
+        return "wheel-1", last, 0.0
+
+
+def train_mechanism(results: GearTrainResults, machine: MechanismSource | None = None) -> Mechanism:
+    """The chosen train as a mechanism whose driven link turns once; or a machine that it drives.
+
+    What drives is the link "wheel-1", "carrier-1" or "shaft-1"; one planet stands for all of a stage; behind a pair the
+    driven link is "crank".
+
+    Parameters
+    ----------
+    results : GearTrainResults
+    machine : Mechanism, or the name of its file or of a built-in one
+        With one drive, which turns a link about a point of the frame at a constant speed. The pair behind the train
+        turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the crank
+        keeps its sense. Range and instants are converted to the motor. `[machine]` is omitted, as wheels and planets
+        hardly ever return together: a cycle is that of the machine without the train.
+
+    Raises
+    ------
+    InputError
+        Of a machine: a train without a pair behind it; another kind of machine; names that both have.
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> list(ct.train_mechanism(ct.gear_train("single-planet-train")).links)
+    ['wheel-1', 'carrier-1', 'planet-1', 'crank']
+    """
+    if machine is not None:
+        return _machine_with_train(results, mechanism_of(machine))
+    described = results.gear_train
+    parts = _Parts(described.module)
+    driver, last, along = parts.train(results)
+    if described.pair_behind is not None:
+        driving, driven = described.pair_behind
+        parts.points[CRANK_AXIS] = [along + (driving + driven) * parts.radius, 0.0]
+        parts.wheel(CRANK, CRANK_AXIS, "C1", driven)
+        parts.gear(last, CRANK, -driving / driven)
+    turns = min(abs(results.whole_ratio(results.chosen)), MOST_TURNS)
+    has_speed = described.input_speed is not None or described.output_speed is not None
+    tables: Mapping[str, Any] = {
+        "title": described.title,
+        "display": {"length": "mm", "angle": "deg"},
+        "frame": {"points": parts.points},
+        "links": parts.links,
+        "gears": parts.gears,
+        "drives": [
+            {"link": driver, "start": 0.0, "speed": results.input_speed if has_speed else USUAL_SPEED}
+        ],
+        "study": {"from": 0.0, "to": turns * math.tau},
+    }
+    return mechanism_from(tables)
+
+
+def _machine_with_train(results: GearTrainResults, mechanism: Mechanism) -> Mechanism:
+    described = results.gear_train
+    if described.pair_behind is None:
+        what = _("the train has no pair behind it, which could turn the crank")
+        raise InputError(
+            "pair_behind", what, _("give the numbers of teeth of a pair: pair_behind = [15, 30]")
+        )
+    tables = document(mechanism)
+    drive, crank, centre = _crank_of(mechanism, tables)
+    driving, driven = described.pair_behind
+    ratio = results.whole_ratio(results.chosen)
+    apart = (driving + driven) * described.module / 2
+    place = tables["frame"]["points"][centre]
+    # The train lies to the left of the crank: first its length, then the pair.
+    measure = _Parts(described.module)
+    along = measure.train(results)[2]
+    parts = _Parts(described.module, (place[0] - apart - along, place[1]))
+    driver, last, _along = parts.train(results)
+    parts.gear(last, crank, -driving / driven)
+    for own, added in ((tables["frame"]["points"], parts.points), (tables["links"], parts.links)):
+        both = sorted(set(own) & set(added))
+        if both:
+            what = _("machine and train both have {name}").format(name=both[0])
+            raise InputError("machine", what, _("give it another name"))
+        own.update(added)
+    tables["gears"] = [*tables.get("gears", []), *parts.gears]
+    start, speed = float(drive.get("start", 0.0)), float(drive["speed"])
+    tables["links"][crank]["angle"] = start
+    if described.input_speed is not None or described.output_speed is not None:
+        speed = math.copysign(results.input_speed / abs(ratio), speed)
+    tables["drives"] = [{"link": driver, "start": 0.0, "speed": speed * ratio}]
+    _convert_study(tables, start, ratio)
+    tables.pop("machine", None)
+    return mechanism_from(tables)
+
+
+def _crank_of(mechanism: Mechanism, tables: dict[str, Any]) -> tuple[dict[str, Any], str, str]:
+    """The drive, the link that it turns, and the point of the frame about which it does."""
+    drives = tables.get("drives", [])
+    link = str(drives[0].get("link")) if len(drives) == 1 else ""
+    if (
+        link in mechanism.links
+        and isinstance(drives[0].get("speed"), float)
+        and "relative_to" not in drives[0]
+    ):
+        for point in mechanism.links[link].points:
+            if point in tables["frame"]["points"]:
+                return drives[0], link, point
+    what = _("a train drives a machine with one drive that turns a link about a point of the frame")
+    raise InputError("machine", what, _("choose such a machine"))
+
+
+def _convert_study(tables: dict[str, Any], start: float, ratio: float) -> None:
+    """What was said of the crank is said of the motor."""
+    study = tables.get("study", {})
+    for key in ("from", "to"):
+        if key in study:
+            study[key] = (study[key] - start) * ratio
+    if "to" not in study and "range" not in study:
+        study |= {"from": 0.0, "to": math.tau * abs(ratio)}
+    if study.get("from", 0.0) > study.get("to", 0.0):
+        study["from"], study["to"] = study["to"], study["from"]
+    if "instants" in study:
+        # Those of the first turn of the crank from its start, in the sense of the motor.
+        turn = math.tau * abs(ratio)
+        study["instants"] = [((instant - start) * ratio) % turn for instant in study["instants"]]
+    tables["study"] = study

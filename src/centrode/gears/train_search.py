@@ -1,0 +1,253 @@
+"""Trains of a ratio: all tooth numbers within bounds, by size; the nearest ratio where none has it.
+
+Every combination of tooth numbers that coaxial axes leave is looked at, so nothing within the bounds is missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.gears.planetary_trains import (
+    INTERNAL,
+    ROOT,
+    SCHEMES,
+    TIP,
+    AnyTrain,
+    CarrierSeries,
+    Driver,
+    OrdinaryTrain,
+    PlanetaryScheme,
+    PlanetaryTrain,
+)
+
+Whole = NDArray[np.int64]
+Train = TypeVar("Train", bound=AnyTrain)
+
+MOST_TRAINS = 1000
+"""So many trains are listed at most, the smallest ones."""
+
+
+@dataclass(frozen=True)
+class TrainBounds:
+    """What is sought.
+
+    Attributes
+    ----------
+    ratio : speed of what drives over that of what is driven; a positive one is met in either sense of rotation, a
+        negative one in the opposite sense only
+    tolerance : of the ratio, relative
+    least, most : numbers of teeth
+    planets : number of them
+    """
+
+    ratio: float
+    tolerance: float
+    least: int
+    most: int
+    planets: int = 1
+
+    def misses(self, ratios: NDArray[np.float64]) -> NDArray[np.float64]:
+        """By how much ratios miss that which is sought, relative."""
+        met = ratios if self.ratio < 0 else np.abs(ratios)
+        return np.asarray(np.abs(met / self.ratio - 1))
+
+
+@dataclass(frozen=True)
+class FoundTrains:
+    """Trains within the bounds, the smallest first; where there is none, the nearest one alone.
+
+    Attributes
+    ----------
+    trains : those within the tolerance
+    nearest : the one with the nearest ratio where there is none within; None where no teeth fit at all
+    more : whether there are more than are listed
+    """
+
+    trains: tuple[AnyTrain, ...]
+    nearest: AnyTrain | None = None
+    more: bool = False
+
+
+def find_trains(scheme: str, bounds: TrainBounds, driver: Driver | None = None) -> FoundTrains:
+    """All trains of a scheme within bounds, ranked by size.
+
+    Parameters
+    ----------
+    scheme : a planetary one, "two carriers" (two of single planets in series), "one pair" or "two pairs"
+    bounds : TrainBounds
+    driver : of a planetary scheme; the usual one by default
+    """
+    if scheme in SCHEMES:
+        planetary = SCHEMES[scheme]
+        return _planetary_trains(planetary, bounds, driver or planetary.driver)
+    if scheme == "two carriers":
+        return _carrier_series(bounds, driver or "sun")
+    return _ordinary_trains(bounds, 1 if scheme == "one pair" else 2)
+
+
+def ranked(trains: list[Train]) -> list[Train]:
+    """Trains by size; those of one size by their tooth numbers."""
+    return sorted(trains, key=lambda train: (train.diameter, train.teeth))
+
+
+def _planetary_trains(scheme: PlanetaryScheme, bounds: TrainBounds, driver: Driver) -> FoundTrains:
+    within: list[Whole] = [np.empty((0, 4), np.int64)]
+    for rows in _coaxial_rows(scheme, bounds):
+        within.append(rows[bounds.misses(_ratios(scheme, rows, driver)) <= bounds.tolerance])
+    rows = np.concatenate(within)
+    order = np.lexsort((*rows.T[::-1], _diameters(scheme, rows)))
+    working = _working_trains(scheme, rows[order], bounds.planets, driver)
+    found = list(islice(working, MOST_TRAINS + 1))
+    if found:
+        return FoundTrains(tuple(found[:MOST_TRAINS]), more=len(found) > MOST_TRAINS)
+    rows = np.concatenate([*_coaxial_rows(scheme, bounds)])
+    misses = bounds.misses(_ratios(scheme, rows, driver))
+    order = np.lexsort((*rows.T[::-1], _diameters(scheme, rows), misses))
+    return FoundTrains((), next(_working_trains(scheme, rows[order], bounds.planets, driver), None))
+
+
+def _working_trains(
+    scheme: PlanetaryScheme, rows: Whole, planets: int, driver: Driver
+) -> Iterator[PlanetaryTrain]:
+    """The trains of rows whose meshes work, in the order of the rows."""
+    for sun, planet, other, fixed in map(tuple, rows.tolist()):
+        train = PlanetaryTrain(scheme, (sun, planet, other, fixed), planets, driver)
+        if train.meshes_work:
+            yield train
+
+
+def _coaxial_rows(scheme: PlanetaryScheme, bounds: TrainBounds) -> Iterator[Whole]:
+    """Rows z_1, z_2, z_2', z_3, for each sun, that are coaxial, clear and assemble; interference is not looked at."""
+    teeth = np.arange(bounds.least, bounds.most + 1)
+    planet, other = (np.ravel(part) for part in np.meshgrid(teeth, teeth, indexing="ij"))
+    if not scheme.stepped:
+        planet = other = teeth
+    step = np.gcd(planet, other)
+    greatest = np.maximum(planet, other)
+    sign = scheme.sun * scheme.fixed
+    sine = np.sin(np.pi / bounds.planets)
+    for sun in teeth.tolist():
+        arm = sun - scheme.sun * planet
+        fixed = arm + scheme.fixed * other
+        kept = (arm > 0) & (fixed >= bounds.least) & (fixed <= bounds.most)
+        if bounds.planets > 1:
+            kept &= arm * sine > greatest + TIP
+        phase = sign * sun * other - planet * fixed
+        kept &= (phase != 0) & (phase % (bounds.planets * step) == 0)
+        yield np.stack([np.full(kept.sum(), sun), planet[kept], other[kept], fixed[kept]], axis=-1)
+
+
+def _ratios(scheme: PlanetaryScheme, rows: Whole, driver: Driver) -> NDArray[np.float64]:
+    sun, planet, other, fixed = rows.T
+    # u_1H = (z_1 z_2' - s z_2 z_3)/(z_1 z_2'), the whole numbers first: near one digits would be lost.
+    ratio = (sun * other - scheme.sun * scheme.fixed * planet * fixed) / (sun * other)
+    return np.asarray(ratio if driver == "sun" else 1 / ratio)
+
+
+def _diameters(scheme: PlanetaryScheme, rows: Whole) -> NDArray[np.float64]:
+    """`PlanetaryTrain.diameter` of many."""
+    sun, planet, other, fixed = rows.T
+    reach = [sun - scheme.sun * planet + np.maximum(planet, other) + TIP]
+    for sign, teeth in ((scheme.sun, sun), (scheme.fixed, fixed)):
+        reach.append(teeth + (ROOT if sign == INTERNAL else TIP))
+    return np.asarray(np.max(reach, axis=0), dtype=np.float64)
+
+
+# Products of two ratios: two carriers, two pairs
+
+
+def _products(
+    ratios: NDArray[np.float64], sizes: Callable[[int, Whole], NDArray[np.float64]], bounds: TrainBounds
+) -> tuple[list[tuple[int, int]], tuple[int, int] | None, bool]:
+    """Pairs of places whose ratios have the product that is sought, the smallest first; else the nearest pair.
+
+    A pair of places counts in both orders. `sizes` gives the size of one with many.
+    """
+    order = np.argsort(ratios, kind="stable")
+    rising = ratios[order]
+    wanted = abs(bounds.ratio)
+    found: list[tuple[float, int, int]] = []
+    nearest: tuple[float, int, int] | None = None
+    worst, more = np.inf, False
+    for first, ratio in enumerate(ratios.tolist()):
+        # A little wider than the tolerance: what lies on its edge is decided by `misses` itself.
+        low, high = (wanted * (1 + side * bounds.tolerance * (1 + 1e-9)) / ratio for side in (-1, 1))
+        begin, end = np.searchsorted(rising, low, "left"), np.searchsorted(rising, high, "right")
+        second = order[begin:end]
+        second = second[bounds.misses(np.sign(bounds.ratio) * ratio * ratios[second]) <= bounds.tolerance]
+        if len(second):
+            size = sizes(first, second)
+            kept = size <= worst
+            found += zip(size[kept].tolist(), [first] * int(kept.sum()), second[kept].tolist(), strict=True)
+            if len(found) > 40 * MOST_TRAINS:
+                # Only sizes up to that of the last one listed can still come in.
+                found = sorted(found)
+                worst = found[MOST_TRAINS][0]
+                found, more = [one for one in found if one[0] <= worst], True
+        elif not found:
+            for place in {max(int(begin) - 1, 0), min(int(end), len(order) - 1)}:
+                miss = float(bounds.misses(np.array([np.sign(bounds.ratio) * ratio * rising[place]]))[0])
+                if nearest is None or miss < nearest[0]:
+                    nearest = (miss, first, int(order[place]))
+    pairs = [(first, second) for _size, first, second in sorted(found)]
+    return pairs, None if nearest is None else nearest[1:], more
+
+
+def _carrier_series(bounds: TrainBounds, driver: Driver) -> FoundTrains:
+    scheme = SCHEMES["single planets"]
+    rows = np.concatenate([*_coaxial_rows(scheme, bounds)])
+    stages = list(_working_trains(scheme, rows, bounds.planets, driver))
+    if not stages or bounds.ratio < 0:
+        return FoundTrains(())
+    ratios = np.array([float(stage.ratio) for stage in stages])
+    diameters = np.array([stage.diameter for stage in stages])
+    pairs, nearest, more = _products(
+        ratios, lambda first, second: np.maximum(diameters[first], diameters[second]), bounds
+    )
+
+    def train_of(places: tuple[int, int]) -> CarrierSeries:
+        return CarrierSeries((stages[places[0]], stages[places[1]]))
+
+    return _list_of([train_of(pair) for pair in pairs], None if nearest is None else train_of(nearest), more)
+
+
+def _list_of(trains: list[Train], nearest: Train | None, more: bool) -> FoundTrains:
+    listed = ranked(trains)
+    more = more or len(listed) > MOST_TRAINS
+    return FoundTrains(tuple(listed[:MOST_TRAINS]), None if listed else nearest, more)
+
+
+def _ordinary_trains(bounds: TrainBounds, pairs: int) -> FoundTrains:
+    teeth = np.arange(bounds.least, bounds.most + 1)
+    driving, driven = (np.ravel(part) for part in np.meshgrid(teeth, teeth, indexing="ij"))
+    sense = (-1) ** pairs
+    # External pairs turn the sense round once each: a negative ratio needs an odd number of them.
+    if bounds.ratio < 0 < sense:
+        return FoundTrains(())
+    ratios = driven / driving
+    if pairs == 1:
+        misses = bounds.misses(sense * ratios)
+        trains = [
+            OrdinaryTrain(((int(driving[at]), int(driven[at])),))
+            for at in np.flatnonzero(misses <= bounds.tolerance)
+        ]
+        at = int(np.argmin(misses))
+        return _list_of(trains, OrdinaryTrain(((int(driving[at]), int(driven[at])),)), more=False)
+
+    def sizes(first: int, second: Whole) -> NDArray[np.float64]:
+        axes = driving[first] + driven[first] + driving[second] + driven[second]
+        return np.asarray((axes + driving[first] + driven[second]) / 2 + TIP)
+
+    places, nearest, more = _products(ratios, sizes, bounds)
+
+    def train_of(pair: tuple[int, int]) -> OrdinaryTrain:
+        first, second = ((int(driving[at]), int(driven[at])) for at in pair)
+        return OrdinaryTrain((first, second))
+
+    return _list_of([train_of(pair) for pair in places], None if nearest is None else train_of(nearest), more)

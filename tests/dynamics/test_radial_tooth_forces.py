@@ -1,0 +1,134 @@
+"""Radial forces of pairs of gears in reactions, against the equilibrium of each wheel and against refusals."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.errors import InputError
+
+SHAFTS = """
+[frame.points]
+O = [0, 0]
+C = [{distance}, 0]
+[links.OA]
+points = {{ O = [0, 0], A = ["18 mm", 0] }}
+[links.CB]
+points = {{ C = [0, 0], B = ["37 mm", 0] }}
+angle = 0.0
+[[gears]]
+links = ["OA", "CB"]
+{gear}
+[[loads]]
+kind = "torque"
+link = "CB"
+value = {moment}
+[[drives]]
+link = "OA"
+start = 0
+speed = "60 rpm"
+"""
+EXTERNAL = 'pair = "shifted-gear-pair"'
+DISTANCE = 0.0564998697
+
+
+def _shafts(gear: str = EXTERNAL, distance: float = DISTANCE, moment: float = 20.0) -> ct.Mechanism:
+    return ct.parse_mechanism(SHAFTS.format(gear=gear, distance=distance, moment=moment))
+
+
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_an_external_pair_presses_its_axes_apart(moment: float) -> None:
+    """F_t = M/r_w and F_r = F_t tan(alpha_w), the same whichever way the load turns; hinges bear both."""
+    found = ct.reactions(_shafts(moment=moment), samples=3)
+    pair = ct.gear_pair("shifted-gear-pair").geometry
+    tangential = abs(moment) / (pair.wheels[1].working_pitch / 2)
+    radial = tangential * math.tan(pair.working_angle)
+    on_wheel = found.tooth_radial_force.sel(gear="OA-CB").to_numpy()
+    assert np.allclose(on_wheel, [radial, 0.0], rtol=1e-6)
+    for side, sign in (("C/CB", -1), ("O/OA", 1)):
+        pin = found.joint_force.sel(side=side).to_numpy()
+        assert np.allclose(pin[:, 0], sign * radial, rtol=1e-6)
+        assert np.allclose(np.abs(pin[:, 1]), tangential, rtol=1e-6)
+    frame = found.joint_force.sel(side="C/frame").to_numpy()
+    assert np.allclose(frame[:, 0], radial, rtol=1e-6)
+
+
+def test_a_ring_presses_its_pinion_towards_its_centre() -> None:
+    pair = ct.gear_pair("internal-gear-pair").geometry
+    distance = (
+        -pair.centre_distance
+    )  # the ring's centre lies to the left: the teeth mesh to the right of the pinion
+    found = ct.reactions(_shafts('pair = "internal-gear-pair"', distance), samples=3)
+    radial = 20.0 / (pair.wheels[1].working_pitch / 2) * math.tan(pair.working_angle)
+    assert np.allclose(found.tooth_radial_force.isel(gear=0), [radial, 0.0], rtol=1e-9)
+    assert np.allclose(found.joint_force.sel(side="O/OA", axis="x"), radial, rtol=1e-9)
+    assert found.gear.to_numpy().tolist() == ["OA-CB"]
+
+
+def test_what_is_without_a_pair_has_no_radial_force() -> None:
+    bare, paired = (ct.reactions(_shafts(gear), samples=3) for gear in ("ratio = -0.5", EXTERNAL))
+    assert "tooth_radial_force" not in bare
+    assert np.allclose(bare.tooth_force, paired.tooth_force, rtol=1e-12)
+    assert np.allclose(bare.balancing, paired.balancing, rtol=1e-12)
+    assert np.allclose(bare.frame_force, paired.frame_force, rtol=1e-12, atol=1e-9)
+
+
+def test_a_pair_is_read_back_with_its_ratio() -> None:
+    mechanism = _shafts()
+    assert mechanism.gears[0].ratio == -0.5
+    assert ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
+    helical = ct.gear_pair("helical-gear-pair").geometry.centre_distance
+    degrees = 'display = { angle = "deg" }\n' + SHAFTS.format(
+        gear='pair = "helical-gear-pair"', distance=helical, moment=1
+    )
+    mechanism = ct.parse_mechanism(degrees)
+    assert ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in ct.example_names("gear pair") if name not in ("rack-gear-pair",)]
+)
+def test_the_working_mesh_is_that_of_the_geometry(name: str) -> None:
+    described = ct.example(name)
+    if described.purpose is not None and described.centre_distance is None:
+        pytest.skip("its shifts are chosen for a purpose")
+    angle, distance = described.working_mesh()
+    geometry = ct.gear_pair(name).geometry
+    assert angle == pytest.approx(geometry.working_angle, rel=1e-12)
+    assert distance == pytest.approx(geometry.centre_distance, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("gear", "distance", "said"),
+    [
+        (EXTERNAL, 0.057, "the centres are 0.057 m apart, and the pair meshes at 0.0564998697 m"),
+        (EXTERNAL + "\nratio = -0.4", DISTANCE, "not that of the pair, -0.5"),
+        ('pair = "rack-gear-pair"', DISTANCE, "keeps no ratio of angles"),
+        ('pair = "crank-rocker"', DISTANCE, "no built-in pair of gears"),
+        ('pair = "nothing.toml"', DISTANCE, "nothing.toml"),
+        ('pair = "../pair.toml"', DISTANCE, "not in the folder"),
+        ("pair = 3", DISTANCE, "expected the name"),
+        ('pair = { kind = "cam" }', DISTANCE, "not a pair of gears"),
+        (
+            'pair = { kind = "gear pair", module = "3 mm", teeth = [12, 24], shifts = "strength" }',
+            DISTANCE,
+            "chosen for a purpose",
+        ),
+        ('pair = { kind = "gear pair", module = "3 mm", teeth = [3, 24] }', DISTANCE, "whole number"),
+    ],
+)
+def test_refusals(gear: str, distance: float, said: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        _shafts(gear, distance)
+    assert said in str(refusal.value)
+    assert "[[gears]] 1" in str(refusal.value)
+
+
+def test_there_is_no_pair_on_the_sphere() -> None:
+    text = ct.mechanism_text(ct.example("bevel-pair"))
+    line = next(line for line in text.splitlines() if line.startswith("ratio ="))
+    with pytest.raises(InputError, match="none on the sphere"):
+        ct.parse_mechanism(text.replace(line, 'pair = "shifted-gear-pair"'))

@@ -1,0 +1,1 @@
+"""Random pairs of gears against teeth that are cut and turned by brute force."""
