@@ -34,6 +34,7 @@ from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
 from centrode.model.gear_pairs import gear_pair_text, parse_gear_pair
 from centrode.sweeps.sweep import read_sweep
+from centrode.synthesis.requests import parse_synthesis
 from samples import few
 
 # Matrices here are small, and a worker runs on every core: threads of the linear algebra would only wait for each
@@ -151,6 +152,9 @@ def read_toml(example: Example) -> None:
     tables = tomllib.loads(text)
     if named and "mechanism" in tables:
         read_sweep(named.group(1))
+        return
+    if "synthesis" in tables:
+        parse_synthesis(text, folder=Path.cwd())
         return
     if tables.get("kind") == "gear pair":
         pair = parse_gear_pair(text)

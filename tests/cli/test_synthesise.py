@@ -48,7 +48,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
     (folder / "shaper.toml").write_text(wanted, encoding="utf-8")
     done = centrode("--lang", language, "synthesise", "shaper.toml")
     assert done.code == 0
-    assert "K + 1" in done.out
+    assert "(K - 1)/(K + 1)" in done.out
     assert "0.4" in done.out or "0,4" in done.out
 
 

@@ -105,7 +105,7 @@ def wanted_angles(wanted: Synthesis, shares: Array | None = None) -> tuple[Array
     Both count from the beginning of the range of a formula.
     """
     if wanted.formula is None:
-        rows = np.array(sorted(wanted.targets), dtype=float)  # type: ignore[call-overload]
+        rows = np.array(sorted(wanted.rows), dtype=np.float64)
         return rows[:, 0], rows[:, 1]
     assert wanted.x is not None and wanted.swings is not None
     formula = compile_formula(wanted.formula, ("x",), "[synthesis] formula")

@@ -82,7 +82,7 @@ def path_answers(
         No linkage keeps the constraints.
     """
     wanted = task.synthesis
-    rows = np.array(wanted.targets, dtype=float)
+    rows = np.array(wanted.rows, dtype=np.float64)
     points = rows[:, 0] + 1j * rows[:, 1]
     is_motion = wanted.kind == "motion"
     directions = np.unwrap(rows[:, 2]) if is_motion else None
@@ -201,8 +201,8 @@ def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
         width, height = (side / size for side in constraints.size)
 
         def box(variables: Array, side: Array) -> Array:
-            spread = box_of(variables[:, :9], side)
-            return spread / np.array([width, height]) - 1.0 + 1e-6
+            excess: Array = box_of(variables[:, :9], side) / np.array([width, height]) - 1.0 + 1e-6
+            return excess
 
         parts.append(box)
     if not parts:

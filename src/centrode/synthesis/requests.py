@@ -229,6 +229,11 @@ class Synthesis(DescriptionPart):
         object.__setattr__(self, "targets", self._read_targets())
         return self
 
+    @property
+    def rows(self) -> Rows:
+        """The targets, read; none of a formula and of strokes."""
+        return self.targets if isinstance(self.targets, tuple) else ()
+
     def _read_targets(self) -> Rows:
         columns = {
             "path": TableColumns(("length", "length", "angle"), "[x, y, angle of the drive]", 2),
@@ -364,7 +369,7 @@ def synthesis_from(
     elif not named:
         what = _("nothing says which structure is sought")
         raise InputError(where, what, _('name a topology, as topology = "crank-rocker", or describe links'))
-    kept = {key: others[key] for key in ("title", "display") if key in others}
+    kept: dict[str, Any] = {key: others[key] for key in ("title", "display") if key in others}
     if mechanism is None:
         for key in others:
             if key not in kept:

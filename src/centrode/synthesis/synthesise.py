@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NoReturn, TypeAlias
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
@@ -26,6 +26,10 @@ def task_of(source: SynthesisSource) -> SynthesisTask:
         return read_synthesis(source)
     if isinstance(source, Mapping):
         return synthesis_from(source)
+    return _refuse(source)
+
+
+def _refuse(source: object) -> NoReturn:
     what = _("this function takes a request of a synthesis, its file or its tables")
     raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
 
@@ -34,7 +38,7 @@ def is_exact(task: SynthesisTask) -> bool:
     """Whether poses are few enough to be met exactly, by dimensions that are all free."""
     wanted = task.synthesis
     return (
-        len(wanted.targets) <= MOST_POSES  # type: ignore[arg-type]
+        len(wanted.rows) <= MOST_POSES
         and wanted.timing == "free"
         and wanted.place == "free"
         and not wanted.free
