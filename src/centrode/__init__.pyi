@@ -84,7 +84,7 @@ from .sweeps.solver import solver as solver
 from .sweeps.designs import grid as grid
 from .sweeps.designs import sample as sample
 
-# From the motion one wants to the mechanism
+# Synthesis
 from .synthesis.requests import SynthesisTask as SynthesisTask
 from .synthesis.requests import read_synthesis as read_synthesis
 from .synthesis.synthesise import synthesise as synthesise

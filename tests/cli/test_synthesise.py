@@ -88,7 +88,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 0]]\n'
             "[synthesis.free]\nlinks.XY.length = [1, 2]",
             2,
-            "is no number of this topology",
+            "is not a number of this topology",
         ),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 0]]\n'

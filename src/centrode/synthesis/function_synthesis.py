@@ -125,7 +125,7 @@ def wanted_angles(wanted: Synthesis, shares: Array | None = None) -> tuple[Array
         what = _("the formula has no value at x = {x:g}").format(x=at)
         raise InputError("[synthesis] formula", what, _("change the range of x"))
     if not np.ptp(y) > 0:
-        raise InputError("[synthesis] formula", _("the formula is constant"), _("a rocker would stand still"))
+        raise InputError("[synthesis] formula", _("the formula is constant"), _("give one that changes"))
     share = even if shares is None else shares
     chosen = y if shares is None else value(low + (high - low) * shares)
     return wanted.swings[0] * share, wanted.swings[1] * (chosen - y[0]) / np.ptp(y)

@@ -159,7 +159,7 @@ def _bounds(wanted: Synthesis) -> dict[int, tuple[float, float]]:
     for path, given in wanted.free.items():
         plain = path.replace('"', "")
         if plain not in known:
-            what = _("{path} is no number of this topology").format(path=value_text(path))
+            what = _("{path} is not a number of this topology").format(path=value_text(path))
             raise InputError("[synthesis.free]", what, nearest(plain, known))
         if not isinstance(given, list | tuple) or len(given) != 2:
             raise InputError(f"[synthesis.free] {path}", _("expected [least, greatest]"))
