@@ -56,7 +56,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
     ("text", "code", "said"),
     [
         ("", 2, "there is no table [synthesis]"),
-        ('[synthesis]\nkind = "path"', 2, "nothing says which structure is sought"),
+        ('[synthesis]\nkind = "path"', 2, "the structure that is sought is not given"),
         ('[synthesis]\nkind = "way"\ntopology = "crank-rocker"', 2, "expected one of"),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0]]',

@@ -156,7 +156,7 @@ def random_crank_rockers(seed: int, count: int):
 
 
 def test_paths_of_random_crank_rockers_are_recovered() -> None:
-    """The campaign `synthesis` takes 200 of them."""
+    """To rounding: what is sought is there."""
     for _row, path in random_crank_rockers(7, 1):
         table = [[float(z.real), float(z.imag)] for z in path]
         wanted = {

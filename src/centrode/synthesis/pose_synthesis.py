@@ -131,7 +131,7 @@ def _chosen(
     wanted = task.synthesis
     linkages, crank, sides = _linkages(poses, dyads, pairs)
     constraints = wanted.constraints
-    turns: Booleans = (crank_margins(linkages) > 1e-9).all(axis=1)
+    turns = np.all(crank_margins(linkages) > 1e-9, axis=1)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
     one_side = (sides == sides[:, :1]).all(axis=1)
     # A crank that turns fully may pass all poses in the other sense as well.

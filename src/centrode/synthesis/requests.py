@@ -344,14 +344,14 @@ class SynthesisTask(DescriptionPart):
 
 
 def read_synthesis(path: str | Path) -> SynthesisTask:
-    """The request in a TOML file; raises InputError that says where it is wrong.
+    r"""The request in a TOML file; raises InputError that says where it is wrong.
 
     Examples
     --------
     >>> import pathlib, tempfile
     >>> import centrode as ct
     >>> file = pathlib.Path(tempfile.mkdtemp()) / "lever.toml"
-    >>> written = file.write_text('[synthesis]\\nkind = "strokes"\\ntopology = "shaper"\\nstroke = "0.4 m"')
+    >>> written = file.write_text('[synthesis]\nkind = "strokes"\ntopology = "shaper"\nstroke = "0.4 m"')
     >>> ct.read_synthesis(file).synthesis.stroke
     0.4
     """
@@ -384,7 +384,7 @@ def synthesis_from(
             raise InputError(where, what, _("remove topology, or the links"))
         mechanism = mechanism_from(others, where, folder, bare_angles)
     elif not named:
-        what = _("nothing says which structure is sought")
+        what = _("the structure that is sought is not given")
         raise InputError(where, what, _('name a topology, as topology = "crank-rocker", or describe links'))
     kept: dict[str, Any] = {key: others[key] for key in ("title", "display") if key in others}
     if mechanism is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NoReturn, TypeAlias
+from typing import Any, TypeAlias
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
@@ -20,16 +20,13 @@ SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
 
 def task_of(source: SynthesisSource) -> SynthesisTask:
     """The request itself, of a file, or of tables as a file's; InputError for anything else."""
-    if isinstance(source, SynthesisTask):
-        return source
-    if isinstance(source, str | Path):
-        return read_synthesis(source)
-    if isinstance(source, Mapping):
-        return synthesis_from(source)
-    return _refuse(source)
-
-
-def _refuse(source: object) -> NoReturn:
+    given: object = source
+    if isinstance(given, SynthesisTask):
+        return given
+    if isinstance(given, str | Path):
+        return read_synthesis(given)
+    if isinstance(given, Mapping):
+        return synthesis_from(given)
     what = _("this function takes a request of a synthesis, its file or its tables")
     raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
 

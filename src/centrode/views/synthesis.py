@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -177,9 +178,9 @@ def _curve_tables(results: SynthesisResults) -> dict[str, Callable[[], Table]]:
     tables: dict[str, Callable[[], Table]] = {}
     for number, answer in enumerate(results.answers, 1):
         if len(answer.curve):
-            tables[f"curve-{number}"] = lambda places=answer.curve: _places_table(places)
+            tables[f"curve-{number}"] = partial(_places_table, answer.curve)
     for name, places in results.curves.items():
-        tables[name.replace("_", "-")] = lambda places=places: _places_table(places)
+        tables[name.replace("_", "-")] = partial(_places_table, places)
     return tables
 
 
