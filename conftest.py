@@ -36,6 +36,7 @@ from centrode.model.gear_pair_files import gear_pair_text
 from centrode.model.gear_pairs import parse_gear_pair
 from centrode.model.gear_trains import gear_train_text, parse_gear_train
 from centrode.sweeps.sweep import read_sweep
+from centrode.synthesis.requests import parse_synthesis
 from samples import few
 
 # Matrices here are small, and a worker runs on every core: threads of the linear algebra would only wait for each
@@ -153,6 +154,9 @@ def read_toml(example: Example) -> None:
     tables = tomllib.loads(text)
     if named and "mechanism" in tables:
         read_sweep(named.group(1))
+        return
+    if "synthesis" in tables:
+        parse_synthesis(text, folder=Path.cwd())
         return
     if tables.get("kind") == "gear pair":
         pair = parse_gear_pair(text)

@@ -92,7 +92,7 @@ from .tolerances.sensitivity import sensitivity as sensitivity
 from .tolerances.results import tolerances as tolerances
 from .tolerances.allocation import allocate_tolerances as allocate_tolerances
 
-# From the motion one wants to the mechanism
+# Synthesis
 from .synthesis.requests import SynthesisTask as SynthesisTask
 from .synthesis.requests import read_synthesis as read_synthesis
 from .synthesis.synthesise import synthesise as synthesise

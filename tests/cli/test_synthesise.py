@@ -48,7 +48,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
     (folder / "shaper.toml").write_text(wanted, encoding="utf-8")
     done = centrode("--lang", language, "synthesise", "shaper.toml")
     assert done.code == 0
-    assert "K + 1" in done.out
+    assert "(K - 1)/(K + 1)" in done.out
     assert "0.4" in done.out or "0,4" in done.out
 
 
@@ -56,7 +56,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
     ("text", "code", "said"),
     [
         ("", 2, "there is no table [synthesis]"),
-        ('[synthesis]\nkind = "path"', 2, "nothing says which structure is sought"),
+        ('[synthesis]\nkind = "path"', 2, "the structure that is sought is not given"),
         ('[synthesis]\nkind = "way"\ntopology = "crank-rocker"', 2, "expected one of"),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0]]',
@@ -88,7 +88,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 0]]\n'
             "[synthesis.free]\nlinks.XY.length = [1, 2]",
             2,
-            "is no number of this topology",
+            "is not a number of this topology",
         ),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 0]]\n'

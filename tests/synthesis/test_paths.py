@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.synthesis import four_bars
+from centrode.synthesis import curve_matching, four_bars, path_synthesis
 from centrode.synthesis.cognates import cognates
 from centrode.synthesis.requests import parse_synthesis
 from coupler_continuation import walk
@@ -90,12 +91,14 @@ def test_five_points_with_a_given_pivot(timing: str, reached: float) -> None:
     check_ordered(best, np.array([complex(*place) for place in FIVE]))
 
 
-def test_constraints_are_kept() -> None:
+def test_constraints_are_kept(monkeypatch) -> None:
     """Transmission, lengths, places of hinges and the box, each read off the description by itself."""
     limits = (
         'crank = "OA"\ntransmission = "40 deg"\nlength_ratio = 6\npivots = { x = [-60, 60], y = [-60, 60] }\n'
         "size = [125, 100]"
     )
+    few = functools.partial(curve_matching.closed_candidates, count=100)
+    monkeypatch.setattr(path_synthesis, "closed_candidates", few)
     found = ct.synthesise(request('targets = "yu1.csv"', limits))
     for answer in found.answers:
         mechanism = answer.mechanism
@@ -153,8 +156,8 @@ def random_crank_rockers(seed: int, count: int):
 
 
 def test_paths_of_random_crank_rockers_are_recovered() -> None:
-    """The campaign `synthesis` takes 200 of them."""
-    for _row, path in random_crank_rockers(7, 2):
+    """To rounding: what is sought is there."""
+    for _row, path in random_crank_rockers(7, 1):
         table = [[float(z.real), float(z.imag)] for z in path]
         wanted = {
             "topology": "crank-rocker",

@@ -18,7 +18,6 @@ POSES = [[0, 0, 0.0], [1, 0.6, 0.3], [2, 1, 0.7], [3, 0.9, 1.2], [3.5, 0.4, 1.6]
 
 @pytest.mark.parametrize("seed", range(4))
 def test_five_poses_have_the_dyads_of_an_own_elimination(seed: int) -> None:
-    """The campaign `synthesis` takes 1000 sets."""
     random = np.random.default_rng(seed)
     places, angles = random.normal(size=(5, 2)), random.uniform(-3, 3, 5)
     found = burmester.five_pose_dyads(Poses(places[:, 0] + 1j * places[:, 1], angles))

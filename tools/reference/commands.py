@@ -28,7 +28,10 @@ PAGES: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
             "Commands of forces and motion under load",
             ("reduce", "reactions", "polygons", "flywheel", "simulate", "balance"),
         ),
-        "commands-cams-and-many": ("Commands of cams and of many mechanisms", ("cam", "variants", "sweep")),
+        "commands-cams-and-many": (
+            "Commands of cams, synthesis and many mechanisms",
+            ("cam", "synthesise", "variants", "sweep"),
+        ),
     }
 )  # fmt: skip
 """Pages of commands: file -> title, commands. A command that none of them names stands at the end of the last."""

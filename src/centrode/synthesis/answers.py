@@ -239,6 +239,14 @@ def proved_defects(
     return Defects(order, branch, needs_crank and (not turns or branch))
 
 
+def box_around(mechanism: Mechanism, places: Array) -> tuple[float, float]:
+    """Width and height [m] of the box around the frame and the places of all moving points, (samples, points, 2)."""
+    fixed = np.array(list(mechanism.frame.points.values()), dtype=np.float64)
+    low = np.minimum(np.nanmin(places, axis=(0, 1)), fixed.min(axis=0))
+    high = np.maximum(np.nanmax(places, axis=(0, 1)), fixed.max(axis=0))
+    return float(high[0] - low[0]), float(high[1] - low[1])
+
+
 def traced(
     mechanism: Mechanism, point: str, crank: Array, sense: float, turns: bool
 ) -> tuple[Complex, Complex, tuple[float, float]]:
@@ -254,10 +262,7 @@ def traced(
     except CentrodeError:
         return none, none, (math.nan, math.nan)
     places = data.position.to_numpy()
-    fixed = np.array([tuple(place)[:2] for place in mechanism.frame.points.values()])
-    low = np.minimum(np.nanmin(places, axis=(0, 1)), fixed.min(axis=0))
-    high = np.maximum(np.nanmax(places, axis=(0, 1)), fixed.max(axis=0))
-    box = (float(high[0] - low[0]), float(high[1] - low[1]))
+    box = box_around(mechanism, places)
     if exact is None:
         return none, none, box
     curve = data.position.sel(point=point).to_numpy()

@@ -39,12 +39,14 @@ class Poses:
     @property
     def turns(self) -> Complex:
         """(n - 1) unit complex numbers: by what each pose is turned from the first."""
-        return np.exp(1j * (self.angles[1:] - self.angles[0]))
+        turns: Complex = np.exp(1j * (self.angles[1:] - self.angles[0]))
+        return turns
 
     @property
     def shifts(self) -> Complex:
         """(n - 1) complex: where each pose takes the point that lies in the origin in the first pose."""
-        return self.places[1:] - self.turns * self.places[0]
+        shifts: Complex = self.places[1:] - self.turns * self.places[0]
+        return shifts
 
     @property
     def size(self) -> float:

@@ -1,8 +1,8 @@
 """Cognates: the two other four-bar linkages that draw the same coupler curve.
 
-S. Roberts, Proc. London Math. Soc. 7, 1875. With k = p/b, the place of the coupler point as a complex number in units of the coupler, the third fixed hinge is
-E = O + k (D - O). One cognate hangs between O and E, the other between D and E; each has a coupler triangle similar to
-the first.
+S. Roberts, Proc. London Math. Soc. 7, 1875. With k = p/b, the place of the coupler point as a complex number in units
+of the coupler, the third fixed hinge is E = O + k (D - O). One cognate hangs between O and E, the other between D and
+E; each has a coupler triangle similar to the first.
 """
 
 from __future__ import annotations

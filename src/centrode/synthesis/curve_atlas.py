@@ -1,10 +1,10 @@
 """An atlas of coupler curves: shapes by which a target curve finds linkages that draw something like it.
 
 A closed curve, run through at constant speed, is a sum of rotating vectors c_k exp(i k t). Where it starts only turns
-the phases of c_k, a turn of the curve turns all of them, its size scales them and its place is c_0. So the magnitudes |c_k|
-of k other than 0, divided by their root sum of squares, describe the shape alone; a mirrored curve and one that is run
-through backwards have them in the opposite order of k (C. T. Zahn, R. Z. Roskies, IEEE Trans. Computers C-21, 1972,
-269-281; J. R. McGarva, G. Mullineux, Mech. Mach. Theory 28, 1993).
+the phases of c_k, a turn of the curve turns all of them, its size scales them and its place is c_0. So the magnitudes
+|c_k| of k other than 0, divided by their root sum of squares, describe the shape alone; a mirrored curve and one that
+is run through backwards have them in the opposite order of k (C. T. Zahn, R. Z. Roskies, IEEE Trans. Computers C-21,
+1972, 269-281; J. R. McGarva, G. Mullineux, Mech. Mach. Theory 28, 1993).
 """
 
 from __future__ import annotations
@@ -61,12 +61,12 @@ def at_equal_distances(curves: Complex, count: int, closed: bool) -> tuple[Compl
         curves = np.concatenate([curves, curves[:, :1]], axis=1)
     lanes, points = curves.shape
     way = np.concatenate([np.zeros((lanes, 1)), np.cumsum(np.abs(np.diff(curves, axis=1)), axis=1)], axis=1)
-    way = way / np.maximum(way[:, -1:], 1e-300)
+    shares: Array = way / np.maximum(way[:, -1:], 1e-300)
     share = np.linspace(0.0, 1.0, count, endpoint=not closed)
     # One interpolation for all lanes: each has an interval of length two of its own.
     offset = 2.0 * np.arange(lanes)[:, None]
-    where = np.interp((share + offset).ravel(), (way + offset).ravel(), np.tile(np.arange(points), lanes))
-    where = where.reshape(lanes, count)
+    where = np.interp((share + offset).ravel(), (shares + offset).ravel(), np.tile(np.arange(points), lanes))
+    where = np.reshape(where, (lanes, count))
     low = np.minimum(where.astype(np.int64), points - 2)
     row = np.arange(lanes)[:, None]
     part = where - low
@@ -99,14 +99,14 @@ def _crank_rockers(random: np.random.Generator, count: int) -> Array:
 
     With g + b - c - 1, g + c - b - 1 and b + c - g - 1 any positive numbers, Grashof's rule holds.
     """
-    excess = np.exp(random.uniform(np.log(0.02), np.log(5.0), (count, 3)))
+    excess: Array = np.exp(random.uniform(np.log(0.02), np.log(5.0), (count, 3)))
     ground, coupler, rocker = (1.0 + excess.sum(axis=1) - excess[:, k] for k in range(3))
     return _with_points(random, ground, np.ones(count), coupler, rocker, 6.0)
 
 
 def _drag_links(random: np.random.Generator, count: int) -> Array:
     """Random linkages whose shortest link is the frame."""
-    excess = np.exp(random.uniform(np.log(0.02), np.log(5.0), (count, 3)))
+    excess: Array = np.exp(random.uniform(np.log(0.02), np.log(5.0), (count, 3)))
     crank, coupler, rocker = (1.0 + excess.sum(axis=1) - excess[:, k] for k in range(3))
     return _with_points(random, 1 / crank, np.ones(count), coupler / crank, rocker / crank, 4.0)
 

@@ -79,7 +79,8 @@ def in_sense(angles: Array, sense: float) -> Array:
     steps = np.mod(sense * np.diff(angles), 2 * np.pi)
     # rounding must not make a turn of two equal angles
     steps = np.where(steps > 2 * np.pi - 1e-9, 0.0, steps)
-    return angles[0] + sense * np.concatenate([[0.0], np.cumsum(steps)])
+    unrolled: Array = angles[0] + sense * np.concatenate([[0.0], np.cumsum(steps)])
+    return unrolled
 
 
 def _as_variables(linkages: Array) -> Array:
@@ -121,7 +122,8 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
                     found.append((float(flat[index]), index, int(starts[start]), width, mirror, backwards))
     found.sort()
     made = [
-        _arc_placed(book, int(chosen[index]), points, shares, *rest) for _miss, index, *rest in found[:count]
+        _arc_placed(book, int(chosen[index]), points, shares, start, width, mirror, backwards)
+        for _miss, index, start, width, mirror, backwards in found[:count]
     ]
     return Lanes(
         np.concatenate([one[0] for one in made]),

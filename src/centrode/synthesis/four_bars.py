@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Booleans: TypeAlias = npt.NDArray[np.bool_]
 Complex: TypeAlias = npt.NDArray[np.complex128]
 
 DIMENSIONS = ("O.x", "O.y", "D.x", "D.y", "OA", "AB", "DB", "P.x", "P.y")

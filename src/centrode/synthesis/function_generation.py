@@ -1,11 +1,11 @@
 """Four-bar linkages whose rocker follows a given function of the crank.
 
-With phi and psi the angles of crank and rocker from the frame, Freudenstein's equation
-K1 cos psi - K2 cos phi + K3 = cos(phi - psi) is linear in K1 = d/a, K2 = d/c and K3 = (a^2 - b^2 + c^2 + d^2)/(2 a c)
-(F. Freudenstein, Trans. ASME 76, 1954, 483-492; 77, 1955, 853-861). Three precision points give the three numbers. Four
-are possible where a determinant of four rows vanishes, which is c0 + c1 cos 2 psi0 + c2 sin 2 psi0 in the starting
-angle of the rocker; five where two such determinants vanish, which leaves one equation of eighth degree in the starting angle
-of the crank.
+With phi and psi the angles of crank and rocker from the frame, Freudenstein's equation K1 cos psi - K2 cos phi + K3 =
+cos(phi - psi) is linear in K1 = d/a, K2 = d/c and K3 = (a^2 - b^2 + c^2 + d^2)/(2 a c) (F. Freudenstein, Trans. ASME
+76, 1954, 483-492; 77, 1955, 853-861). Three precision points give the three numbers. Four are possible where a
+determinant of four rows vanishes, which is c0 + c1 cos 2 psi0 + c2 sin 2 psi0 in the starting angle of the rocker;
+five where two such determinants vanish, which leaves one equation of eighth degree in the starting angle of the
+crank.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ def five_points(crank: Array, rocker: Array) -> FunctionLinkages:
         values[k] = _resultant(crank, rocker, first, second, np.pi * k / count)
     coefficients = np.fft.fft(values) / count
     polynomial = [coefficients[k] for k in (4, 3, 2, 1, 0, -1, -2, -3, -4)]
-    starts = []
+    starts: list[Array] = []
     for root in np.roots(polynomial):
         if not 0.99 < abs(root) < 1.01:
             continue

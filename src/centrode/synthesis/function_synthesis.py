@@ -105,7 +105,7 @@ def wanted_angles(wanted: Synthesis, shares: Array | None = None) -> tuple[Array
     Both count from the beginning of the range of a formula.
     """
     if wanted.formula is None:
-        rows = np.array(sorted(wanted.targets), dtype=float)  # type: ignore[call-overload]
+        rows = np.array(sorted(wanted.rows), dtype=np.float64)
         return rows[:, 0], rows[:, 1]
     assert wanted.x is not None and wanted.swings is not None
     formula = compile_formula(wanted.formula, ("x",), "[synthesis] formula")
@@ -125,7 +125,7 @@ def wanted_angles(wanted: Synthesis, shares: Array | None = None) -> tuple[Array
         what = _("the formula has no value at x = {x:g}").format(x=at)
         raise InputError("[synthesis] formula", what, _("change the range of x"))
     if not np.ptp(y) > 0:
-        raise InputError("[synthesis] formula", _("the formula is constant"), _("a rocker would stand still"))
+        raise InputError("[synthesis] formula", _("the formula is constant"), _("give one that changes"))
     share = even if shares is None else shares
     chosen = y if shares is None else value(low + (high - low) * shares)
     return wanted.swings[0] * share, wanted.swings[1] * (chosen - y[0]) / np.ptp(y)

@@ -24,6 +24,7 @@ from centrode.synthesis.four_bars import (
     PY,
     ROCKER,
     Array,
+    Booleans,
     Complex,
     coupler_motion,
     coupler_slopes,
@@ -71,7 +72,7 @@ class Problem:
     """
 
     targets: Targets
-    free: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
+    free: Booleans
     low: Array
     high: Array
     hinges: Hinges | None = None
@@ -141,7 +142,7 @@ def _angles(problem: Problem, variables: Array, crank: Array) -> Array:
     return crank + variables[:, PHASE, None]
 
 
-def _residuals(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array]:
+def _residuals(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Booleans]:
     """(lanes, n, rows) of the targets, and (lanes,) bool whether the linkage closes at all of them."""
     motion = coupler_motion(variables[:, :9], _angles(problem, variables, crank), side)
     targets = problem.targets
@@ -150,7 +151,7 @@ def _residuals(problem: Problem, variables: Array, side: Array, crank: Array) ->
     if targets.directions is not None:
         wanted = np.exp(1j * (targets.directions - variables[:, ATTACHMENT, None]))
         rows.append(targets.arm * np.angle(motion.direction / wanted))
-    return np.stack(rows, axis=-1), (motion.radicand > 0).all(axis=1)
+    return np.stack(rows, axis=-1), np.all(motion.radicand > 0, axis=1)
 
 
 def _slopes(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array]:

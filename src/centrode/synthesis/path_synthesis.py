@@ -82,7 +82,7 @@ def path_answers(
         No linkage keeps the constraints.
     """
     wanted = task.synthesis
-    rows = np.array(wanted.targets, dtype=float)
+    rows = np.array(wanted.rows, dtype=np.float64)
     points = rows[:, 0] + 1j * rows[:, 1]
     is_motion = wanted.kind == "motion"
     directions = np.unwrap(rows[:, 2]) if is_motion else None
@@ -159,7 +159,7 @@ def _bounds(wanted: Synthesis) -> dict[int, tuple[float, float]]:
     for path, given in wanted.free.items():
         plain = path.replace('"', "")
         if plain not in known:
-            what = _("{path} is no number of this topology").format(path=value_text(path))
+            what = _("{path} is not a number of this topology").format(path=value_text(path))
             raise InputError("[synthesis.free]", what, nearest(plain, known))
         if not isinstance(given, list | tuple) or len(given) != 2:
             raise InputError(f"[synthesis.free] {path}", _("expected [least, greatest]"))
@@ -201,8 +201,8 @@ def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
         width, height = (side / size for side in constraints.size)
 
         def box(variables: Array, side: Array) -> Array:
-            spread = box_of(variables[:, :9], side)
-            return spread / np.array([width, height]) - 1.0 + 1e-6
+            excess: Array = box_of(variables[:, :9], side) / np.array([width, height]) - 1.0 + 1e-6
+            return excess
 
         parts.append(box)
     if not parts:

@@ -20,6 +20,7 @@ from centrode.synthesis.burmester import (
 )
 from centrode.synthesis.four_bars import (
     Array,
+    Booleans,
     Complex,
     coupler_motion,
     crank_margins,
@@ -55,7 +56,7 @@ def pose_answers(
         No linkage leads through the poses, or none that keeps what is required.
     """
     wanted = task.synthesis
-    rows = np.array(wanted.targets, dtype=float)
+    rows = np.array(wanted.rows, dtype=np.float64)
     poses = Poses(rows[:, 0] + 1j * rows[:, 1], rows[:, 2])
     dyads, pairs, curves = _dyads(wanted, poses)
     if not len(pairs):
@@ -130,7 +131,7 @@ def _chosen(
     wanted = task.synthesis
     linkages, crank, sides = _linkages(poses, dyads, pairs)
     constraints = wanted.constraints
-    turns = (crank_margins(linkages) > 1e-9).all(axis=1)
+    turns = np.all(crank_margins(linkages) > 1e-9, axis=1)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
     one_side = (sides == sides[:, :1]).all(axis=1)
     # A crank that turns fully may pass all poses in the other sense as well.
@@ -209,9 +210,7 @@ def _linkages(
     return linkages, crank, sides
 
 
-def _along(
-    linkages: Array, side: Array, way: Array, turns: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
-) -> tuple[Array, np.ndarray[tuple[int, ...], np.dtype[np.bool_]]]:
+def _along(linkages: Array, side: Array, way: Array, turns: Booleans) -> tuple[Array, Booleans]:
     """Least transmission angle (n,) [rad] and whether a linkage closes all along, over a turn or from pose to pose."""
     transmission = least_transmission(linkages)
     passes = turns.copy()

@@ -229,6 +229,11 @@ class Synthesis(DescriptionPart):
         object.__setattr__(self, "targets", self._read_targets())
         return self
 
+    @property
+    def rows(self) -> Rows:
+        """The targets, read; none of a formula and of strokes."""
+        return self.targets if isinstance(self.targets, tuple) else ()
+
     def _read_targets(self) -> Rows:
         columns = {
             "path": TableColumns(("length", "length", "angle"), "[x, y, angle of the drive]", 2),
@@ -299,7 +304,7 @@ def _check_targets(kind: str, rows: Rows) -> None:
 
 def _check_strokes(wanted: Synthesis) -> None:
     if wanted.topology not in STROKE_TOPOLOGIES:
-        what = _("strokes are known of {names}").format(names=", ".join(STROKE_TOPOLOGIES))
+        what = _("strokes are synthesised for {names}").format(names=", ".join(STROKE_TOPOLOGIES))
         raise Problem(what, nearest(str(wanted.topology or ""), STROKE_TOPOLOGIES), ("topology",))
     if wanted.targets is not None:
         raise Problem(_("strokes have no targets"), _("remove it"), ("targets",))
@@ -319,6 +324,13 @@ class SynthesisTask(DescriptionPart):
     display : Display
     synthesis : Synthesis
     mechanism : Mechanism or None
+
+    Examples
+    --------
+    >>> import centrode as ct
+    >>> lever = {"kind": "strokes", "topology": "crank-rocker", "swing": "40 deg", "time_ratio": 1.2}
+    >>> ct.SynthesisTask(title="Lever", synthesis=lever).synthesis.time_ratio
+    1.2
     """
 
     title: Text = ""
@@ -332,7 +344,17 @@ class SynthesisTask(DescriptionPart):
 
 
 def read_synthesis(path: str | Path) -> SynthesisTask:
-    """The request in a TOML file; raises InputError that says where it is wrong."""
+    r"""The request in a TOML file; raises InputError that says where it is wrong.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import centrode as ct
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "lever.toml"
+    >>> written = file.write_text('[synthesis]\nkind = "strokes"\ntopology = "shaper"\nstroke = "0.4 m"')
+    >>> ct.read_synthesis(file).synthesis.stroke
+    0.4
+    """
     path = Path(path)
     return parse_synthesis(read_file(path), path.name, path.parent)
 
@@ -362,9 +384,9 @@ def synthesis_from(
             raise InputError(where, what, _("remove topology, or the links"))
         mechanism = mechanism_from(others, where, folder, bare_angles)
     elif not named:
-        what = _("nothing says which structure is sought")
+        what = _("the structure that is sought is not given")
         raise InputError(where, what, _('name a topology, as topology = "crank-rocker", or describe links'))
-    kept = {key: others[key] for key in ("title", "display") if key in others}
+    kept: dict[str, Any] = {key: others[key] for key in ("title", "display") if key in others}
     if mechanism is None:
         for key in others:
             if key not in kept:

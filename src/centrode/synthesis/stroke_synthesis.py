@@ -12,7 +12,7 @@ from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.synthesis.answers import CHECKED_PLACES, Answer, Defects, SynthesisResults
+from centrode.synthesis.answers import CHECKED_PLACES, Answer, Defects, SynthesisResults, box_around
 from centrode.synthesis.requests import Synthesis, SynthesisTask
 from centrode.synthesis.strokes import (
     EQUAL,
@@ -68,16 +68,18 @@ def _answer(mechanism: Mechanism, transmission: float, wanted: Synthesis) -> Ans
     """An answer with the stroke and the time ratio that the engine finds in its motion."""
     data = motion(mechanism, CHECKED_PLACES)
     branch = bool((data.status.to_numpy() != int(Status.OK)).any())
-    places = data.position.to_numpy()
-    fixed = np.array([tuple(place)[:2] for place in mechanism.frame.points.values()])
-    low = np.minimum(np.nanmin(places, axis=(0, 1)), fixed.min(axis=0))
-    high = np.maximum(np.nanmax(places, axis=(0, 1)), fixed.max(axis=0))
+    box = box_around(mechanism, data.position.to_numpy())
     numbers = _measured(mechanism, wanted)
     zero = 0.0
     return Answer(
-        mechanism, zero, zero, zero, transmission, (float(high[0] - low[0]), float(high[1] - low[1])),
+        mechanism, zero, zero, zero, transmission, box,
         Defects(False, branch, branch), numbers=numbers,
     )  # fmt: skip
+
+
+def start_of(mechanism: Mechanism) -> float:
+    """Angle [rad] at which the crank starts."""
+    return float(mechanism.drives[0].start or 0.0)
 
 
 def output_of(mechanism: Mechanism, wanted: Synthesis) -> tuple[str, str]:
@@ -103,7 +105,7 @@ def _measured(mechanism: Mechanism, wanted: Synthesis) -> Mapping[str, tuple[flo
         return data.slide.to_numpy()[:, column], data.slide_velocity.to_numpy()[:, column]
 
     # off the round angles at which limit positions like to lie
-    turn = np.linspace(0.0, 2 * math.pi, CHECKED_PLACES) + float(mechanism.drives[0].start) + OFF_ROUND
+    turn = np.linspace(0.0, 2 * math.pi, CHECKED_PLACES) + start_of(mechanism) + OFF_ROUND
     _values, speeds = at(turn.tolist())
     cells = np.flatnonzero(speeds[:-1] * speeds[1:] < 0)
     low, high, rises = turn[cells], turn[cells + 1], speeds[cells] > 0

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -183,7 +184,7 @@ def _family(
     ]
 
 
-def _joint(fixed: Complex, end: complex, arm: Array) -> Complex:
+def _joint(fixed: Any, end: complex, arm: Array) -> Complex:
     """A in a limit position: the crank lies along the line from O to B, or against it where `arm` is negative."""
     away = end - fixed
     joint: Complex = fixed + arm * away / np.abs(away)

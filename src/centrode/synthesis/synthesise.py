@@ -20,12 +20,13 @@ SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
 
 def task_of(source: SynthesisSource) -> SynthesisTask:
     """The request itself, of a file, or of tables as a file's; InputError for anything else."""
-    if isinstance(source, SynthesisTask):
-        return source
-    if isinstance(source, str | Path):
-        return read_synthesis(source)
-    if isinstance(source, Mapping):
-        return synthesis_from(source)
+    given: object = source
+    if isinstance(given, SynthesisTask):
+        return given
+    if isinstance(given, str | Path):
+        return read_synthesis(given)
+    if isinstance(given, Mapping):
+        return synthesis_from(given)
     what = _("this function takes a request of a synthesis, its file or its tables")
     raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
 
@@ -34,7 +35,7 @@ def is_exact(task: SynthesisTask) -> bool:
     """Whether poses are few enough to be met exactly, by dimensions that are all free."""
     wanted = task.synthesis
     return (
-        len(wanted.targets) <= MOST_POSES  # type: ignore[arg-type]
+        len(wanted.rows) <= MOST_POSES
         and wanted.timing == "free"
         and wanted.place == "free"
         and not wanted.free

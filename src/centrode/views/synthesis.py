@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from centrode.model.files import mechanism_text
+from centrode.model.reading import two_points
 from centrode.sheets.curve_maps import CurveMap, MapCurve, MapPanel
 from centrode.sheets.pictures import Picture
 from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel, Plot
@@ -144,39 +146,41 @@ def _construction(results: SynthesisResults) -> Iterator[Section]:
     wanted = results.task.synthesis
     if wanted.kind != "strokes" or wanted.time_ratio is None:
         return
-    lines = [("theta", "pi frac(K - 1, K + 1)")]
+    lines = [("theta", "pi (K - 1)/(K + 1)")]
     if wanted.topology == "shaper":
-        lines += [("a", "d sin frac(theta, 2)"), ("l", "frac(H, 2 sin frac(theta, 2))")]
+        lines += [("a", "d sin(theta/2)"), ("l", "H/(2 sin(theta/2))")]
     elif wanted.topology == "whitworth-quick-return":
-        lines += [("d", "a sin frac(theta, 2)"), ("l", "frac(H, 2)")]
+        lines += [("d", "a sin(theta/2)"), ("l", "H/2")]
     else:
         if wanted.topology != "slider-crank-offset":
-            lines.append(("s", "2 c sin frac(psi, 2)"))
+            lines.append(("s", "2 c sin(psi/2)"))
         stroke = "H" if wanted.topology == "slider-crank-offset" else "s"
         lines += [
-            ("b + a", f"{stroke} frac(sin(beta + theta), sin theta)"),
-            ("b - a", f"{stroke} frac(sin beta, sin theta)"),
+            ("b + a", f"{stroke} sin(beta + theta)/sin(theta)"),
+            ("b - a", f"{stroke} sin(beta)/sin(theta)"),
         ]
     yield Section(Sentence("Construction"), (Formula(tuple(lines)),))
 
 
 def _length(answer: Answer, name: str) -> float:
-    """Length of a link, of one with more points the distance of its first two; NaN of a missing one."""
+    """Length of a link between the points it is named by, else between its first two; NaN of a missing one."""
     link = answer.mechanism.links.get(name)
     if link is None:
         return math.nan
-    places = list(link.coordinates.values())
+    named = two_points(name)
+    at = link.coordinates
+    places = [at[end] for end in named] if named and set(named) <= set(at) else list(at.values())
     return math.dist(places[0], places[1]) if len(places) > 1 else math.nan
 
 
-def _curve_tables(results: SynthesisResults) -> dict[str, object]:
+def _curve_tables(results: SynthesisResults) -> dict[str, Callable[[], Table]]:
     """The curve of each answer, and the curves of poses."""
-    tables: dict[str, object] = {}
+    tables: dict[str, Callable[[], Table]] = {}
     for number, answer in enumerate(results.answers, 1):
         if len(answer.curve):
-            tables[f"curve-{number}"] = lambda places=answer.curve: _places_table(places)
+            tables[f"curve-{number}"] = partial(_places_table, answer.curve)
     for name, places in results.curves.items():
-        tables[name.replace("_", "-")] = lambda places=places: _places_table(places)
+        tables[name.replace("_", "-")] = partial(_places_table, places)
     return tables
 
 
@@ -237,7 +241,7 @@ def _map(results: SynthesisResults, title: Title) -> CurveMap:
                 (curve,),
                 _planar(results.targets),
                 tuple(_skeleton(answer)),
-                np.array([place[:2] for place in answer.mechanism.frame.points.values()], dtype=float),
+                np.array(list(answer.mechanism.frame.points.values()), dtype=np.float64),
                 _arrows(results),
             )
         )
@@ -252,7 +256,8 @@ def _skeleton(answer: Answer) -> Iterator[Array]:
     links = mechanism.links
     if set(links) != {"OA", "AB", "DB"} or not len(answer.drive):
         return
-    fixed, other = (complex(*mechanism.frame.points[name][:2]) for name in ("O", "D"))
+    at = np.array([mechanism.frame.points[name] for name in ("O", "D")], dtype=np.float64)
+    fixed, other = at[:, 0] + 1j * at[:, 1]
     crank = _length(answer, "OA")
     joint = fixed + crank * np.exp(1j * answer.drive[0])
     local = {name: complex(*place[:2]) for name, place in links["AB"].coordinates.items()}
@@ -270,7 +275,7 @@ def _arrows(results: SynthesisResults) -> Array | None:
     """Directions of the poses as arrows."""
     if results.task.synthesis.kind != "motion":
         return None
-    rows = np.array(results.task.synthesis.targets, dtype=float)
+    rows = np.array(results.task.synthesis.rows, dtype=np.float64)
     spread = float(np.abs(results.targets - results.targets.mean()).max()) or 1.0
     ends = results.targets + 0.3 * spread * np.exp(1j * rows[: len(results.targets), 2])
     return np.stack([_planar(results.targets), _planar(ends)], axis=1)
