@@ -20,7 +20,7 @@ LANGUAGES = ("c", "python", "matlab", "javascript")
 """Kinds that are source files."""
 ROBOTS = ("urdf", "sdf")
 """Kinds that have a file of loops beside them."""
-KINDS = ("mjcf", *ROBOTS, "fmu", *LANGUAGES)
+KINDS = ("mjcf", *ROBOTS, "fmu", "freecad", *LANGUAGES)
 
 
 @click.command(help=mark("Write a mechanism for another program."))
@@ -33,8 +33,8 @@ KINDS = ("mjcf", *ROBOTS, "fmu", *LANGUAGES)
     help=mark(
         "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and Gazebo, "
         "with a file FILE.loops.json beside FILE. fmu: co-simulation and model exchange (FMI 3.0), for Simulink and "
-        "others. c, python, matlab, javascript: a source file that computes the motion from the drive and from "
-        "dimensions."
+        "others. freecad: a macro with a sketch and moving bars. c, python, matlab, javascript: a source file that "
+        "computes the motion from the drive and from dimensions."
     ),
 )
 @click.option("--c", "kind", flag_value="c", help=mark("The same as --format c."))
@@ -119,7 +119,9 @@ def export(
     else:
         _refuse_options(kind, options)
         with about(mechanism):
-            if kind in ROBOTS:
+            if kind == "freecad":
+                text = library.freecad_macro(description)
+            elif kind in ROBOTS:
                 model = getattr(library, f"{kind}_model")(description)
                 text = model.text
                 if out is not None:

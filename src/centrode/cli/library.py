@@ -30,6 +30,7 @@ write_drawing_set = Lazily("centrode.render.drafting.sheets", "write_drawing_set
 mjcf_text = Lazily("centrode.export.mjcf", "mjcf_text")
 fmu_program = Lazily("centrode.export.fmi", "fmu_program")
 fmu_binaries = Lazily("centrode.export.fmi", "fmu_binaries")
+freecad_macro = Lazily("centrode.export.freecad", "freecad_macro")
 omitted_loads = Lazily("centrode.export.mjcf", "omitted_loads")
 urdf_model = Lazily("centrode.export.robot_models", "urdf_model")
 sdf_model = Lazily("centrode.export.robot_models", "sdf_model")
