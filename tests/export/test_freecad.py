@@ -149,9 +149,13 @@ def test_freecad_solves_the_sketch(tmp_path: Path) -> None:
 
 def test_hostile_titles_are_comments() -> None:
     mechanism = parse_mechanism(
-        ct.mechanism_text(ct.example("crank-rocker")).replace(
-            'title = "', 'title = "\\"\\"\\" \u2028 import os; ', 1
-        )
+        """
+        title = 'QUOTES \\ import os'
+        frame.points = { O = [0, 0], D = [4, 0] }
+        links = { OA.length = 1, AB.length = 3.5, DB.length = 3 }
+        drives = [{ link = "OA", start = 0, speed = 1 }]
+        assembly.sides = { B = "left" }
+        """.replace("QUOTES", '"""')
     )
     text = freecad_macro(mechanism)
     (line,) = [line for line in text.splitlines() if "import os" in line]
