@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -48,12 +49,31 @@ def test_models_of_robots_have_a_file_of_loops_beside_them(centrode: Centrode, t
         (tmp_path / "model.loops.json").unlink()
 
 
+def test_an_fmu_is_written(centrode: Centrode, tmp_path: Path) -> None:
+    file = tmp_path / "engine.fmu"
+    words = ("export", "single-cylinder-engine", "--format", "fmu", "--output", "position B x", "--out", file)
+    done = centrode(*words)
+    assert (done.code, str(file) in done.out) == (0, True), done.err
+    with zipfile.ZipFile(file) as archive:
+        assert set(archive.namelist()) == {
+            "modelDescription.xml", "sources/buildDescription.xml", "sources/engine.c",
+        }  # fmt: skip
+        root = ET.fromstring(archive.read("modelDescription.xml"))
+        names = [each.attrib["name"] for each in root.iter("Float64")]
+    assert "drive moment" in names and "position B x" in names and "position B y" not in names
+    assert centrode(*words).code == 2 and centrode(*words, "--force").code == 0
+
+
 def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
     for words, told in (
         (("export", "crank-rocker", "--format", "step"), "'step' is not one of"),
-        (("export", "crank-rocker", "--vary", "links.AB.length"), "--vary belongs to source files"),
-        (("export", "crank-rocker", "--to", "90 deg"), "--to belongs to source files"),
+        (("export", "crank-rocker", "--vary", "links.AB.length"), "--vary belongs to source files and FMUs"),
+        (("export", "crank-rocker", "--to", "90 deg"), "--to belongs to source files and FMUs"),
         (("export", "hookes-joint", "--format", "urdf"), "planar linkages"),
+        (("export", "crank-rocker", "--format", "fmu"), "FILE.fmu"),
+        (("export", "crank-rocker", "--format", "fmu", "--out", "x.fmu"), "masses"),
+        (("export", "crank-rocker", "--driven"), "belong to an FMU"),
+        (("export", "crank-rocker", "--free", "--c"), "only a model for MuJoCo"),
         (("export", "third-class-triad", "--python"), "platform"),
         (("export", "crank-rocker", "--c", "--vary", "links.XY.length"), "XY"),
         (("export", "crank-rocker", "--matlab", "--out", "my crank.m"), "my_crank.m"),

@@ -20,7 +20,7 @@ LANGUAGES = ("c", "python", "matlab", "javascript")
 """Kinds that are source files."""
 ROBOTS = ("urdf", "sdf")
 """Kinds that have a file of loops beside them."""
-KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
+KINDS = ("mjcf", *ROBOTS, "fmu", "freecad", *LANGUAGES)
 
 
 @click.command(help=mark("Write a mechanism for another program."))
@@ -31,9 +31,10 @@ KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
     type=click.Choice(KINDS),
     default="mjcf",
     help=mark(
-        "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and "
-        "Gazebo, with a file FILE.loops.json beside FILE. c, python, matlab, javascript: a source "
-        "file that computes the motion from the drive and from dimensions."
+        "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and Gazebo, "
+        "with a file FILE.loops.json beside FILE. fmu: co-simulation and model exchange (FMI 3.0), for Simulink and "
+        "others. freecad: a macro with a sketch and moving bars. c, python, matlab, javascript: a source file that "
+        "computes the motion from the drive and from dimensions."
     ),
 )
 @click.option("--c", "kind", flag_value="c", help=mark("The same as --format c."))
@@ -56,6 +57,26 @@ KINDS = ("mjcf", *ROBOTS, *LANGUAGES)
     is_flag=True,
     help=mark("mjcf: without drives; masses, springs, dampers and constant loads move the model."),
 )
+@click.option(
+    "--driven",
+    is_flag=True,
+    help=mark("fmu: the drive's value, speed and acceleration are inputs; by default its moment is one."),
+)
+@click.option(
+    "--output",
+    "outputs",
+    multiple=True,
+    metavar=mark("NAME"),
+    help=mark(
+        'fmu: a variable that it gives ("position B x", "angle AB"); may be repeated. All of them by default.'
+    ),
+)
+@click.option(
+    "--compile",
+    "compiled",
+    is_flag=True,
+    help=mark("fmu: with a binary for this machine, by its C compiler."),
+)
 @start_option
 @stop_option
 @click.option(
@@ -70,6 +91,9 @@ def export(
     kind: str,
     vary: tuple[str, ...],
     free: bool,
+    driven: bool,
+    outputs: tuple[str, ...],
+    compiled: bool,
     start: str | None,
     stop: str | None,
     out: Path | None,
@@ -79,15 +103,25 @@ def export(
     beside: dict[Path, str] = {}
     if free and kind != "mjcf":
         raise InputError("--free", _("only a model for MuJoCo is left to its loads"), _("add --format mjcf"))
-    options = {"vary": list(vary) or None, "start": start, "stop": stop}
+    options: dict[str, Any] = {"vary": list(vary) or None, "start": start, "stop": stop}
+    if kind != "fmu" and (driven or outputs or compiled):
+        raise InputError(
+            "--format", _("--driven, --output and --compile belong to an FMU"), _("add --format fmu")
+        )
     description = library.load(mechanism)
+    if kind == "fmu":
+        options["outputs"], options["driven"] = list(outputs) or None, driven
+        _write_fmu(description, mechanism, out, options, compiled=compiled, force=force)
+        return
     if kind in LANGUAGES:
         with about(mechanism):
             text = _source_file(description, kind, mechanism, out, options)
     else:
         _refuse_options(kind, options)
         with about(mechanism):
-            if kind in ROBOTS:
+            if kind == "freecad":
+                text = library.freecad_macro(description)
+            elif kind in ROBOTS:
                 model = getattr(library, f"{kind}_model")(description)
                 text = model.text
                 if out is not None:
@@ -120,6 +154,26 @@ def _source_file(
     return text
 
 
+def _write_fmu(
+    description: ct.Mechanism,
+    source: str,
+    out: Path | None,
+    options: dict[str, Any],
+    *,
+    compiled: bool,
+    force: bool,
+) -> None:
+    """Write an FMU, with a binary if it is to have one."""
+    if out is None or out.suffix.lower() != ".fmu":
+        raise InputError("--out", _("an FMU is an archive"), _("name a file FILE.fmu"))
+    with about(source):
+        fmu = library.fmu_program(description, name=library.program_name(out.name), **options)
+        binaries = library.fmu_binaries(fmu) if compiled else {}
+    with output.output_file(out, force=force) as draft:
+        draft.write_bytes(fmu.archive(binaries))
+    click.echo(output.wrote([out]))
+
+
 def _tell_omitted(labels: Sequence[str]) -> None:
     """A line that names the loads that a model does not hold."""
     if labels:
@@ -129,5 +183,7 @@ def _tell_omitted(labels: Sequence[str]) -> None:
 def _refuse_options(kind: str, options: dict[str, Any]) -> None:
     for option, word in (("vary", "--vary"), ("start", "--from"), ("stop", "--to")):
         if options[option] is not None:
-            what = _("{option} belongs to source files, and {kind} is none").format(option=word, kind=kind)
+            what = _("{option} belongs to source files and FMUs, and {kind} is none").format(
+                option=word, kind=kind
+            )
             raise InputError(word, what, _("remove it"))

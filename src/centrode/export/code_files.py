@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 STATUSES = ("ok", "open", "cut off", "singular", "outside")
 """Statuses of a place in the order of their numbers; outside: beyond the range that was printed."""
-SCALARS = ("place", "half", "rate", "second", "reach_low", "reach_high")
+SCALARS = ("place", "half", "rate", "second", "time", "reach_low", "reach_high")
 WHOLE = ("events", "cells", "possible")
 """Numbers of the record that are written: real ones, and whole ones."""
 

@@ -18,6 +18,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from centrode.dynamics.reduction import REDUCED
 from centrode.errors import InputError, NotComputedYet
 from centrode.export import motion_rules
 from centrode.export.code_files import source_text
@@ -27,6 +28,7 @@ from centrode.kinematics.machine_code.variables import (
     PARAMETER,
     RATE,
     SECOND_RATE,
+    TIME,
     Varied,
     varied_of,
 )
@@ -221,6 +223,7 @@ class MotionProgram:
     free: FreeNumbers
     traced: PageTrace
     name: str
+    is_dynamic: bool = False
 
     # What is computed.
 
@@ -281,6 +284,7 @@ class MotionProgram:
         """Every variable of the plan, where the record has it."""
         found: dict[str, tuple[str, int | None]] = {
             PARAMETER: ("place", None), HALF: ("half", None), RATE: ("rate", None), SECOND_RATE: ("second", None),
+            TIME: ("time", None),
         }  # fmt: skip
         found |= {name: ("number", k) for k, name in enumerate(self._numbers)}
         for k, (kind, group) in enumerate(self.traced.guards):
@@ -335,7 +339,18 @@ class MotionProgram:
                 [x for link in traced.angles for x in traced.rotors[link]],
             ),
             RecordFunction("evaluate_counted", "angle", variables, list(traced.counted.values())),
+            *(
+                [RecordFunction("evaluate_reduced", "reduced", variables, self._reduced)]
+                if self.is_dynamic
+                else []
+            ),
         )
+
+    @property
+    def _reduced(self) -> list[Node]:
+        """Reduced moment of inertia, its slope, and the reduced moment of the loads."""
+        known = {quantity.name: quantity for quantity in self.traced.quantities}
+        return [self.traced.rows[int(known[name].rows)].node for name in REDUCED]
 
     # Numbers of the rules.
 
@@ -405,7 +420,7 @@ class MotionProgram:
             "row": rows + 2 + len(self.traced.at_samples), "cell": 3 * guards, "curve": 3 * guards,
             "bound": 2 * guards, "rotor": 2 * angles, "angle": counted, "node_angle": angles * nodes,
             "node_near": counted * nodes, "largest": guards, "stack_at": 200, "stack_half": 200, "first": widest,
-            "above": widest, **{f"event_{name}": size for name, size in kept.items()},
+            "above": widest, "reduced": 3, **{f"event_{name}": size for name, size in kept.items()},
         }  # fmt: skip
 
     @property

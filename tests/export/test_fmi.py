@@ -1,0 +1,146 @@
+"""FMUs: valid for FMPy, and in it they move as simulations and motions of the program."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tools.source_programs import COMPILER
+
+import centrode as ct
+from centrode.errors import InputError, NotComputedYet
+from centrode.export.fmi import FmuProgram, fmu_program
+from centrode.model.examples import example_text
+from samples import ALL
+
+fmpy = pytest.importorskip("fmpy", reason="FMUs are run by FMPy")
+from fmpy.validation import validate_fmu  # noqa: E402
+
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="gcc is not installed")
+
+SOME = ("crank-rocker", "inverted-slider-crank", "parallelogram", "slider-crank-offset")
+TWENTY = (
+    *SOME, "antiparallelogram", "drag-link", "four-bar-and-slider", "four-bar-excerpt", "galloway", "geared-five-bar",
+    "kite", "oscillating-cylinder", "peaucellier", "planetary-gear-train", "rack-and-pinion",
+    "slider-between-cranks-vertical", "scotch-yoke", "shaper", "slider-between-cranks", "whitworth-quick-return",
+)  # fmt: skip
+CASES = TWENTY if ALL else SOME
+TOLERANCE = 1e-8
+MOMENT = 2.0
+
+
+def compiled(fmu: FmuProgram, folder: Path) -> str:
+    """The FMU with a binary for this machine."""
+    assert COMPILER is not None
+    source, library = folder / f"{fmu.name}.c", folder / f"{fmu.name}.so"
+    source.write_text(fmu.source, encoding="utf-8")
+    flags = ["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"]
+    subprocess.run(
+        [COMPILER, *flags, "-o", str(library), str(source), "-lm"], check=True, capture_output=True
+    )
+    file = folder / f"{fmu.name}.fmu"
+    file.write_bytes(fmu.archive({f"binaries/{fmpy.platform_tuple}/{fmu.name}.so": library.read_bytes()}))
+    return str(file)
+
+
+def weighty(name: str) -> ct.Mechanism:
+    """An example with masses, driven by a constant moment for a second and a half."""
+    text = re.sub(r"^(\[links\.[^\].]+\])$", r"\1\nmass = 1.5\ninertia = 2.5", example_text(name), flags=re.M)
+    text = re.sub(r"^\[simulation\](?s:.*)", "", text, flags=re.M)
+    told = f'speed = 2.0\nduration = 1.5\nsamples = 16\ntolerance = {TOLERANCE / 10}\ndriving = "{MOMENT}"'
+    text = text.replace("\ntitle", "\ngravity = [0.0, -9.81]\ntitle", 1) if "gravity" not in text else text
+    return ct.parse_mechanism(f"{text}\n[simulation]\n{told}\n")
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", CASES)
+def test_free_motions_are_those_of_a_simulation(name: str, tmp_path: Path) -> None:
+    mechanism = weighty(name)
+    course = ct.simulate(mechanism)
+    point = next(point for point in reversed(ct.motion(mechanism).point.values))
+    fmu = fmu_program(mechanism, [], [f"position {point} {axis}" for axis in "xy"], name=name)
+    file = compiled(fmu, tmp_path)
+    assert validate_fmu(file) == []
+    times, drive = course.time.values, course.drive_value.values[:, 0]
+    sense = float(np.sign(course.drive_speed.values[0])) * (1.0 if drive[1] > drive[0] else -1.0)
+    places = ct.motion(mechanism, at=drive).position.sel(point=point).values
+    size = max(1.0, float(np.abs(places).max()))
+    # the importer integrates a model of exchange: CVODE gathers some thirty times its tolerance on the way
+    for kind, tolerance in (("CoSimulation", TOLERANCE), ("ModelExchange", TOLERANCE / 100)):
+        found = fmpy.simulate_fmu(
+            file, fmi_type=kind, stop_time=float(times[-1]), output_interval=float(times[1]),
+            relative_tolerance=tolerance, start_values={fmu_input(fmu): sense * MOMENT},
+            output=["drive", "drive speed", *(fmu.program.results[k].name for k in fmu.outputs)],
+        )  # fmt: skip
+        assert np.abs(found["time"] - times).max() < 1e-12
+        assert np.abs(found["drive"] - drive).max() <= 10 * TOLERANCE * max(1.0, np.abs(drive).max()), kind
+        for k, axis in enumerate("xy"):
+            assert np.abs(found[f"position {point} {axis}"] - places[:, k]).max() <= 100 * TOLERANCE * size, (
+                kind
+            )
+    assert np.ptp(drive) > 0.3
+
+
+def fmu_input(fmu: FmuProgram) -> str:
+    return "drive moment" if fmu.program.drive_unit == "rad" else "drive force"
+
+
+@needs_compiler
+def test_whole_turns_go_on_beyond_the_printed_range(tmp_path: Path) -> None:
+    fmu = fmu_program("crank-rocker", [], ["angle OA", "angle DB", "velocity B x"], driven=True)
+    file = compiled(fmu, tmp_path)
+    assert validate_fmu(file) == []
+    times = np.linspace(0.0, 1.0, 41)
+    signals = np.array(
+        [(t, 20.0 * t - 5.0, 20.0, 0.0) for t in times],
+        dtype=[(word, np.float64) for word in ("time", "drive", "drive speed", "drive acceleration")],
+    )
+    found = fmpy.simulate_fmu(
+        file, fmi_type="CoSimulation", stop_time=1.0, output_interval=0.025, input=signals
+    )
+    drive = 20.0 * found["time"] - 5.0
+    # inputs hold during a step: outputs are those of its beginning
+    drive[1:] -= 20.0 * 0.025
+    motion = ct.motion("crank-rocker", at=drive)
+    assert np.abs(found["angle OA"] - motion.angle.sel(link="OA").values).max() < 1e-9
+    assert np.abs(found["angle DB"] - motion.angle.sel(link="DB").values).max() < 1e-9
+    rates = motion.velocity_coefficient.sel(point="B", axis="x").values * 20.0
+    assert np.abs(found["velocity B x"] - rates).max() < 1e-9 * 20.0
+
+
+@needs_compiler
+def test_dimensions_are_parameters(tmp_path: Path) -> None:
+    fmu = fmu_program("crank-rocker", ["links.AB.length"], ["position B x", "position B y"], driven=True)
+    file = compiled(fmu, tmp_path)
+    found = fmpy.simulate_fmu(
+        file, stop_time=0.1, output_interval=0.1, start_values={"links.AB.length": 3.6, "drive": 1.0}
+    )
+    wanted = ct.motion(
+        ct.with_value(ct.example("crank-rocker"), "links.AB.length", 3.6), at=[1.0]
+    ).position.sel(point="B")
+    assert [found["position B x"][0], found["position B y"][0]] == pytest.approx(wanted.values[0], abs=1e-12)
+
+
+def test_the_same_mechanism_gives_the_same_bytes() -> None:
+    one, other = (fmu_program("crank-rocker", [], ["angle DB"], driven=True) for _k in range(2))
+    assert one.archive() == other.archive()
+    assert one.token != fmu_program("crank-rocker", [], ["angle AB"], driven=True).token
+
+
+@pytest.mark.parametrize(
+    ("name", "outputs", "error", "told"),
+    [
+        ("five-bar-two-drives", None, NotComputedYet, "one drive"),
+        ("crank-rocker", None, NotComputedYet, "masses"),
+        ("third-class-triad", None, NotComputedYet, "platform"),
+        ("single-cylinder-engine", ["angle XY"], InputError, "angle XY"),
+    ],
+)
+def test_what_is_no_fmu_is_refused_by_name(
+    name: str, outputs: list[str] | None, error: type[Exception], told: str
+) -> None:
+    with pytest.raises(error, match=told):
+        fmu_program(name, None, outputs)
