@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, Locator
+from matplotlib.ticker import FuncFormatter, Locator, MultipleLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
@@ -139,8 +139,7 @@ class RoundAngles(Locator):
             chosen = step
             if (self.high - self.low) / step <= room:
                 break
-        # as matplotlib's `MultipleLocator`: a step beyond either end, which is not drawn
-        return chosen * np.arange(np.floor(vmin / chosen), np.ceil(vmax / chosen) + 1.0)
+        return MultipleLocator(float(chosen)).tick_values(vmin, vmax)
 
 
 def part_of_pi(value: float) -> str:
