@@ -27,7 +27,7 @@ def without_laws(name):
     return re.sub(r"(?m)^(?:speed|law) = .*\n", "", example_text(name))
 
 
-def dragged(text, point, *places):
+def positions_along(text, point, *places):
     """Positions while the cursor passes places, one after the other."""
     prepared = read_document(text, HERE).position
     values, found = initial_values(prepared), []
@@ -41,7 +41,7 @@ def test_the_arm_reaches_for_the_cursor_as_the_cosine_theorem_says():
     """Two links of 0.5 m: cos(elbow) = (x^2 + y^2)/0.5 - 1; on one side of the elbow all the way."""
     turns = np.linspace(0.2, 1.4, 13)
     places = [(0.8 * math.cos(turn), 0.6 * math.sin(turn)) for turn in turns]
-    found = dragged(example_text("two-link-arm"), "B", *places)
+    found = positions_along(example_text("two-link-arm"), "B", *places)
     side = np.sign(found[0].values["AB"])
     for place, position in zip(places, found, strict=True):
         elbow = side * math.acos((place[0] ** 2 + place[1] ** 2) / 0.5 - 1.0)
@@ -52,7 +52,9 @@ def test_the_arm_reaches_for_the_cursor_as_the_cosine_theorem_says():
 
 def test_out_of_reach_the_arm_points_at_the_cursor():
     places = [(0.9 * math.cos(turn), 0.9 * math.sin(turn)) for turn in np.linspace(0.1, 1.0, 7)]
-    last = dragged(example_text("two-link-arm"), "B", *places, (3 * math.cos(1.0), 3 * math.sin(1.0)))[-1]
+    last = positions_along(
+        example_text("two-link-arm"), "B", *places, (3 * math.cos(1.0), 3 * math.sin(1.0))
+    )[-1]
     assert last.points["B"] == pytest.approx((math.cos(1.0), math.sin(1.0)), abs=1e-6)
 
 
@@ -126,7 +128,7 @@ def test_one_crank_without_a_speed_follows_the_cursor_too():
     assert not has_free_place(read_document(example_text("crank-rocker"), HERE))
     for turn in (0.3, 1.2, 2.9):
         steps = [(2 * math.cos(a), 2 * math.sin(a)) for a in np.linspace(0.0, turn, 9)[1:]]
-        position = dragged(text, "A", *steps)[-1]
+        position = positions_along(text, "A", *steps)[-1]
         assert position.points["A"] == pytest.approx((math.cos(turn), math.sin(turn)), abs=1e-8)
 
 

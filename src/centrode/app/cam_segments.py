@@ -71,7 +71,7 @@ def add_segment(patch: Patch, operation: Operation) -> None:
     """Divide a segment: behind it the follower waits for the half of its time. So the turn stays full."""
     number_before, segment = _segment_of(patch, operation, "after")
     key = _length_key(segment)
-    half = _scaled(patch, segment[key], 0.5, key)
+    half = _scaled_length(patch, segment[key], 0.5, key)
     changes = TextChanges(patch.text)
     changes.set((ROOM, number_before, key), half)
     changes.insert_entry(ROOM, number_before + 1, {key: half, "curve": DWELL})
@@ -92,7 +92,7 @@ def delete_segment(patch: Patch, operation: Operation) -> None:
     if own > 0.0:
         longer = _sum_of(segments[beside], segment, key)
         if longer is None:
-            longer = _scaled(patch, segments[beside][key], (own + gone) / own, key)
+            longer = _scaled_length(patch, segments[beside][key], (own + gone) / own, key)
         changes.set((ROOM, beside, key), longer)
     if not k and "from" in segments[1]:
         changes.remove((ROOM, 1, "from"))
@@ -134,7 +134,7 @@ def _length_key(segment: Mapping[str, Any]) -> str:
     raise InputError("", _("this part of the text is written in a way that cannot be changed here"))
 
 
-def _scaled(patch: Patch, old: Any, factor: float, key: str) -> Any:
+def _scaled_length(patch: Patch, old: Any, factor: float, key: str) -> Any:
     """How long a segment lasts, times a factor, spelled as it was."""
     if isinstance(old, int | float):
         return factor * old

@@ -93,7 +93,7 @@ def position_at(prepared: Ready, values: Mapping[str, float]) -> DrivenPosition:
         place, first, second = (np.array(one).T for one in lanes)
         points[name] = place[0]
         slopes[name] = first[[pairs.index((k, k)) for k in range(count)]]
-        bends[name] = _mixed(second, pairs, count)
+        bends[name] = _mixed_derivatives(second, pairs, count)
     angles = {}
     for link in layout.links if layout.axes == 2 else ():
         cosine, sine = (float(_lanes(x, 0, len(pairs))[0]) for x in at.poses[link][1])
@@ -109,7 +109,7 @@ def _lanes(number: Any, order: int, count: int) -> Array:
     return np.broadcast_to(np.asarray(value, dtype=float), (count,))
 
 
-def _mixed(along: Array, pairs: Sequence[tuple[int, int]], count: int) -> Array:
+def _mixed_derivatives(along: Array, pairs: Sequence[tuple[int, int]], count: int) -> Array:
     """Second derivatives by two drives, from those along sums of directions: by polarisation."""
     bends = np.empty((count, count, along.shape[1]))
     own = [along[pairs.index((k, k))] for k in range(count)]

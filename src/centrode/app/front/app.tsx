@@ -90,10 +90,10 @@ function StageView() {
         <div class="stage-holder" ref={holder} hidden={cam} />
         {cam && <CamStage />}
         {empty && (
-          <div class="welcome">
-            <p>{say(scene.value?.kind === "sphere" ? "empty_sphere" : "empty_stage")}</p>
-            {scene.value?.kind === "plane" && <button type="button" data-do="sphere" onClick={() => write(SPHERE)}>{say("draw_on_sphere")}</button>}
-          </div>
+          <>
+            <p class="welcome">{say(scene.value?.kind === "sphere" ? "empty_sphere" : "empty_stage")}</p>
+            {scene.value?.kind === "plane" && <button type="button" class="begin-sphere" data-do="sphere" onClick={() => write(SPHERE)}>{say("draw_on_sphere")}</button>}
+          </>
         )}
       </div>
       <p class={said.value.bad ? "said bad" : "said"} role="status" id="said">{said.value.text}</p>
