@@ -224,6 +224,26 @@ def test_squares_through_their_change_points(loops: int) -> None:
         assert np.abs(place - expected).max() <= 1e-9
 
 
+def test_twelve_squares_through_their_first_change_points() -> None:
+    """A02 with 12 loops: in the change point 12 closures are lost at once; forty loops are in the benchmarks."""
+    loops = 12
+    run = left(squares(loops), [0.3, 1.0], tolerance=1e-12, duration=1.0)
+    assert run.attrs["ended"] == "duration"
+    inertia, weight = (loops + 1) / 3 + loops, ((loops + 1) / 2 + loops) * 9.81
+    angles = scipy.integrate.solve_ivp(
+        lambda t, y: [y[1], weight / inertia * math.sin(y[0])],
+        (0.0, 1.0),
+        [0.0, 1.0],
+        method="DOP853",
+        t_eval=[0.3, 1.0],
+        rtol=3e-14,
+        atol=1e-15,
+    ).y[0]
+    places = run["position"].sel(point="B0").values
+    assert np.abs(places[:, 0] - np.sin(angles)).max() <= 1e-9
+    assert np.abs(places[:, 1] - np.cos(angles)).max() <= 1e-9
+
+
 def test_through_limits_by_both_routes() -> None:
     """The reduced equation reaches the limit and ends there; the equations of all links go on."""
     mechanism = ct.parse_mechanism(DOUBLE_ROCKER.replace("start = 1.2", "start = 1.2\nspeed = 1"))

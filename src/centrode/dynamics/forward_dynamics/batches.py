@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -92,9 +93,7 @@ def start_of_many(
     for constraint in constraints_of(free.mechanism):
         if isinstance(constraint, AngleDrive | DisplacementDrive | DistanceDrive):
             drive = next(one for one in free.mechanism.drives if one.id == constraint.drive)
-            held.append(
-                KeptDrive(constraint, DrivenBy(drive, Uniform(speeds[drive.id]), values[drive.id]))
-            )
+            held.append(KeptDrive(constraint, DrivenBy(drive, Uniform(speeds[drive.id]), values[drive.id])))
     started = replace(equations, kept=tuple(held))
     coordinates = [np.asarray(x) for x in start.coordinates]
     rest = [0.0] * len(coordinates)
@@ -184,13 +183,11 @@ def integrate_many(
     with ThreadPoolExecutor(threads) as pool:
         for number, instant in enumerate(instants):
             parameters[CONTROLS.index(END)] = instant
-            parts = pool.map(
-                lambda k: integrator.run(
-                    parameters[:, bounds[k] : bounds[k + 1]], state[:, bounds[k] : bounds[k + 1]], ATTEMPTS
-                ),
-                range(threads),
-            )
-            state = np.concatenate(list(parts), axis=1)
+            jobs = [
+                pool.submit(integrator.run, parameters[:, low:high], state[:, low:high], ATTEMPTS)
+                for low, high in pairwise(bounds.tolist())
+            ]
+            state = np.concatenate([job.result() for job in jobs], axis=1)
             attempts += state[2]
             arrived = closes & (state[0] >= instant)
             rows[number][:, arrived] = state[HEADER:, arrived]

@@ -236,10 +236,7 @@ class EquationsOfMotion:
         parts += [
             (
                 [(shaft.inertia, state.drive(shaft.drive))],
-                {
-                    k: [(shaft.inertia, columns[k].drive(shaft.drive))]
-                    for k in self._reach(shaft.coordinate)
-                },
+                {k: [(shaft.inertia, columns[k].drive(shaft.drive))] for k in self._reach(shaft.coordinate)},
             )
             for shaft in self.shafts
         ]

@@ -230,9 +230,9 @@ class MotionIntegration:
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or away > WILD
                 ended = BLOW_UP if wild else STEP_SIZE
-                cause = _("at {time:.9g} s the step became as small as {step:.3g} s").format(
-                    time=time, step=size
-                )
+                cause = _(
+                    "at {time:.9g} s the step became as small as {step:.3g} s; {part} changes its speed fastest there"
+                ).format(time=time, step=size, part=self._fastest(state))
                 break
             if steps >= MOST_STEPS:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
@@ -414,6 +414,16 @@ class MotionIntegration:
         q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
         kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
+
+    def _fastest(self, state: Array) -> str:
+        """Name of the coordinate whose speed changes most, or is the greatest."""
+        names, tree = self.names, self.equations.tree
+        q, w = (list(state[HEADER:, 0][names.part(kind)]) for kind in (names.coordinates, names.speeds))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, tree.values(ARRAYS, q), w, float(state[0, 0]))
+            accelerations = np.array(self.equations.accelerations(ARRAYS, terms)[0], dtype=np.float64)
+        sizes = np.abs(accelerations) / units_of(tree, self.equations.numbers)
+        return tree.coordinates[int(np.argmax(np.nan_to_num(sizes, nan=np.inf)))].name
 
     def _farthest(self, state: Array, rate: float) -> float:
         """The greatest displacement over the greatest length, or speed over what speeds are compared with."""

@@ -116,9 +116,7 @@ def _values(mechanism: Mechanism, path: str, given: Any) -> Array:
     return values
 
 
-def many_dataset(
-    setting: MultibodySetting, numbers: Mapping[str, Array], motions: FreeMotions
-) -> xr.Dataset:
+def many_dataset(setting: MultibodySetting, numbers: Mapping[str, Array], motions: FreeMotions) -> xr.Dataset:
     """The labelled result: the numbers that vary along `mechanism`, states at the instants of `sample`."""
     mechanism, free = setting.mechanism, setting.free
     across = ("mechanism", "sample")

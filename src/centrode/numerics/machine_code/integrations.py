@@ -394,7 +394,9 @@ class _Writer:
         for stage, rate in rates.items():
             if weights[stage]:
                 weight = wide.constant(weights[stage])
-                total = wide.multiply(weight, rate) if total is None else wide.multiply_add(weight, rate, total)
+                total = (
+                    wide.multiply(weight, rate) if total is None else wide.multiply_add(weight, rate, total)
+                )
         assert total is not None
         return total
 
