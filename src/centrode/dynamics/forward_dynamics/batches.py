@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -195,7 +196,7 @@ def integrate_many(
                 progress((number + 1) / len(instants))
     ended = np.where(closes, ENDS.index(DURATION), ENDS.index(NOT_ASSEMBLED)).astype(np.int8)
     for lane in np.flatnonzero(closes & (state[0] < instants[-1])):
-        own = free.with_numbers(map_equations(equations, lambda x, k=lane: _of_lane(x, k)))
+        own = free.with_numbers(map_equations(equations, partial(_of_lane, int(lane))))
         begun_there = InitialState(begun.coordinates[:, lane].copy(), begun.speeds[:, lane].copy())
         steps = own.integration.explicit_steps(begun_there, float(instants[-1]), tolerance, executor)
         reached = instants[instants <= steps.rows[0, -1]]
@@ -221,7 +222,7 @@ def integrate_many(
     )  # fmt: skip
 
 
-def _of_lane(number: Any, lane: int) -> Any:
+def _of_lane(lane: int, number: Any) -> Any:
     """The number of one lane."""
     values = np.asarray(number) if isinstance(number, np.ndarray) else number
     return float(values[lane]) if isinstance(values, np.ndarray) and values.ndim else number
