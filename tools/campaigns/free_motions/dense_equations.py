@@ -32,7 +32,7 @@ APART = 3e-3
 """Their step, of unit coordinates."""
 RANK = 1e-9
 """Equations below this share of the greatest singular value repeat others."""
-MOST_STEPS = 4000
+MOST_STEPS = 500
 
 
 class TooManySteps(Exception):
