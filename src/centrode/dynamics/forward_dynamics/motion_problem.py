@@ -210,7 +210,8 @@ def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[
         INDEPENDENCE: independence,
         AHEAD: ahead,
         LOOKED: looked,
-        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, NEVER),
+        # independence grows as the angle from a change point does: a shorter step passes over none
+        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, 0.5 * independence / fastest),
         GUARD: m.where(near, 1.0, 0.0),
     }
 
