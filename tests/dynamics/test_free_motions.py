@@ -286,3 +286,13 @@ def test_order_of_convergence() -> None:
     assert errors[0] > errors[1] > errors[2]
     # two decades of tolerance are worth more than a decade of error each
     assert errors[2] < 1e-2 * errors[0]
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6])
+def test_no_step_passes_over_a_change_point(tolerance: float) -> None:
+    """A square passes as many of them whatever the tolerance, and stays on its branch."""
+    run = left(squares(1), [3.0], tolerance=tolerance, duration=3.0)
+    tight = left(squares(1), [3.0], tolerance=1e-11, duration=3.0)
+    assert run.sizes["occasion"] == tight.sizes["occasion"] > 0
+    apart = run["position"].sel(point="B0").values - tight["position"].sel(point="B0").values
+    assert np.abs(apart).max() <= 1e-3
