@@ -224,6 +224,26 @@ def test_squares_through_their_change_points(loops: int) -> None:
         assert np.abs(place - expected).max() <= 1e-9
 
 
+def test_twelve_squares_through_their_first_change_points() -> None:
+    """A02 with 12 loops: in the change point 12 closures are lost at once; forty loops are in the benchmarks."""
+    loops = 12
+    run = left(squares(loops), [0.3, 1.0], tolerance=1e-12, duration=1.0)
+    assert run.attrs["ended"] == "duration"
+    inertia, weight = (loops + 1) / 3 + loops, ((loops + 1) / 2 + loops) * 9.81
+    angles = scipy.integrate.solve_ivp(
+        lambda t, y: [y[1], weight / inertia * math.sin(y[0])],
+        (0.0, 1.0),
+        [0.0, 1.0],
+        method="DOP853",
+        t_eval=[0.3, 1.0],
+        rtol=3e-14,
+        atol=1e-15,
+    ).y[0]
+    places = run["position"].sel(point="B0").values
+    assert np.abs(places[:, 0] - np.sin(angles)).max() <= 1e-9
+    assert np.abs(places[:, 1] - np.cos(angles)).max() <= 1e-9
+
+
 def test_through_limits_by_both_routes() -> None:
     """The reduced equation reaches the limit and ends there; the equations of all links go on."""
     mechanism = ct.parse_mechanism(DOUBLE_ROCKER.replace("start = 1.2", "start = 1.2\nspeed = 1"))
@@ -266,3 +286,13 @@ def test_order_of_convergence() -> None:
     assert errors[0] > errors[1] > errors[2]
     # two decades of tolerance are worth more than a decade of error each
     assert errors[2] < 1e-2 * errors[0]
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6])
+def test_no_step_passes_over_a_change_point(tolerance: float) -> None:
+    """A square passes as many of them whatever the tolerance, and stays on its branch."""
+    run = left(squares(1), [3.0], tolerance=tolerance, duration=3.0)
+    tight = left(squares(1), [3.0], tolerance=1e-11, duration=3.0)
+    assert run.sizes["occasion"] == tight.sizes["occasion"] > 0
+    apart = run["position"].sel(point="B0").values - tight["position"].sel(point="B0").values
+    assert np.abs(apart).max() <= 1e-3

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from math import ceil, floor, hypot, tau
-from typing import Any, TypeAlias, assert_never
+from typing import Any, NamedTuple, TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -64,8 +64,7 @@ SLACK = 1e-9
 """A stroke may leave its diagram by this share of the diagram's width: that much is rounding of printed rows."""
 
 
-@dataclass(frozen=True)
-class Situation:
+class Situation(NamedTuple):
     """What a load may depend on: time, the drive's value, the load's coordinate and its speed.
 
     `sense` is 1 where the coordinate grows in time, -1 where it falls, 0 where nothing moves. With several drives q

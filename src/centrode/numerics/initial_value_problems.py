@@ -63,7 +63,7 @@ class InitialValueProblem:
     guard: str = ""
 
     @property
-    def followed(self) -> tuple[str, ...]:
+    def unknowns(self) -> tuple[str, ...]:
         """Names of what is followed."""
         return tuple(self.rates)
 
@@ -75,7 +75,7 @@ class InitialValueProblem:
     @property
     def carried(self) -> tuple[str, ...]:
         """All that is handed from step to step."""
-        return (*self.followed, *self.fixed)
+        return (*self.unknowns, *self.fixed)
 
     @cached_property
     def key(self) -> tuple[object, ...]:
@@ -91,7 +91,7 @@ class InitialValueProblem:
     @cached_property
     def of_closing(self) -> Graph:
         """What a step that is taken ends with; what is not closed stays as it is."""
-        values = {name: self.closing.get(name, variable(name)) for name in self.followed}
+        values = {name: self.closing.get(name, variable(name)) for name in self.unknowns}
         return Graph(values | {name: self.closing[name] for name in self.fixed})
 
     @cached_property

@@ -52,7 +52,7 @@ class PythonIntegration:
 
     @cached_property
     def _control(self) -> Function:
-        followed = self.problem.followed
+        followed = self.problem.unknowns
         marked = [prefix + name for prefix in (OF_FIFTH, OF_THIRD, BEFORE) for name in followed]
         names = [STEP, SIZE, *self.problem.parameters, *self.problem.carried, *marked]
         return python_function(self.problem.of_control, names, self.is_complex)
@@ -73,7 +73,7 @@ class PythonIntegration:
         `times` are those of the stages; rates are multiplied by `slope(stage)`, the derivative of time by what steps
         are taken in.
         """
-        count = len(self.problem.followed)
+        count = len(self.problem.unknowns)
         start, fixed = list(carried[:count]), list(carried[count:])
         stages: list[list[Number]] = []
         for number, (row, time) in enumerate(zip(A, times, strict=True)):
@@ -93,7 +93,7 @@ class PythonIntegration:
     def _run_lane(self, parameters: list[float], state: Array, attempts: int, rows: Array | None) -> None:
         problem = self.problem
         named = dict(zip(problem.parameters, parameters, strict=True))
-        count = len(problem.followed)
+        count = len(problem.unknowns)
         carried = [float(x) for x in state[HEADER:]]
         time, size = float(state[0]), float(state[1])
         limit = problem.carried.index(problem.limit) if problem.limit else None

@@ -267,6 +267,9 @@ SIMULATION = Topic(
                 several=True,
             ),
             FlagOption("motion", mark("Write the motion of all points and links too.")),
+            FlagOption(
+                "reactions", mark("Find the reactions in all joints too, by the equations of all links.")
+            ),
         ),
         extent=Lazily("centrode.dynamics.simulation.results", "simulation_extent"),
         progress=mark("integrating, %"),

@@ -41,6 +41,19 @@ from centrode.sheets.texts import (
     Title,
 )
 from centrode.views.columns import VARIABLES, drive_units, rows_shown, status_column
+from centrode.views.energy_balance import (
+    ADAPTIVE,
+    ENERGIES_CAPTION,
+    ENERGIES_TITLE,
+    RESIDUAL,
+    SHOWN,
+    STIFF,
+    WORKS,
+    energies_at_end,
+    facts_left_out,
+    occasion_facts,
+    works_at_end,
+)
 from centrode.views.motion_plots import (
     deal_to_panels,
     great_value,
@@ -57,19 +70,17 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = NDArray[np.float64]
 
-SHOWN = 8
-"""Coordinates and happenings that are shown one by one."""
 PORTRAIT, PORTRAITS = "simulation-phase-", 6
 """Names of phase portraits begin so; and how many there are at most."""
 SAFETY = 100.0
 """Errors of steps add up, and energies turn over more than once."""
 
-HAPPENINGS = {
+OCCASIONS = {
     "crossing": Sentence("change point passed"),
     "near_miss": Sentence("near miss of a change point"),
     "doubtful": Sentence("change point in doubt"),
 }
-SCHEMES = {"adaptive": Name("DOP853"), "stiff": Name("Radau")}
+SCHEMES = {"adaptive": ADAPTIVE, "stiff": STIFF}
 IN_CSV = (
     "generalised_coordinate",
     "generalised_velocity",
@@ -78,20 +89,22 @@ IN_CSV = (
     "work_part",
     "keeping_moment",
     "velocity_residual",
+    "joint_force",
+    "guide_force",
+    "guide_moment",
 )
-WORKS = ("work_of_drive", "work_of_friction", "work_of_other_loads")
 COORDINATES = {
     "drives": ("drive_value", "drive_speed", "drive_acceleration"),
     "coordinates": ("generalised_coordinate", "generalised_velocity", "generalised_acceleration"),
 }
 TITLES = {
     "simulation-coordinates": Sentence("Coordinates, velocities and accelerations"),
-    "simulation-energies": Sentence("Energies and works"),
+    "simulation-energies": ENERGIES_TITLE,
     "simulation-works": Sentence("Works of loads and drives"),
 }
 CAPTIONS: dict[str, Sentence] = {
     "simulation-coordinates": Sentence("Coordinates, velocities and accelerations over time"),
-    "simulation-energies": Sentence("Energies and works over time"),
+    "simulation-energies": ENERGIES_CAPTION,
     "simulation-works": Sentence("Works of the single loads and drives over time"),
     "simulation-paths": Sentence("Paths of the points"),
 }
@@ -163,13 +176,19 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("ended"), _ending(run))
     for name in islice(coordinates.names, SHOWN):
         yield Fact(Joined((Sentence("coordinate"), Name(name)), " "), _range(coordinates, name))
-    left = len(coordinates.names) - SHOWN
-    if left > 0:
-        yield Fact(NOTHING, Sentence("and {n} more", n=Number(left, digits="d")))
-    yield Fact(Sentence("works"), _works(run))
-    yield Fact(Sentence("energies"), _energies(run))
+    yield from facts_left_out(len(coordinates.names))
+    yield Fact(Sentence("works"), works_at_end(run))
+    yield Fact(Sentence("energies"), energies_at_end(run))
     yield Fact(Sentence("constraints"), _residuals(run))
-    yield from _happenings(run)
+    yield from _occasions(run)
+    if "worst_imbalance" in run.attrs:
+        share = Number(float(run.attrs["worst_imbalance"]), digits=".1e")
+        yield Fact(
+            Sentence("reactions"),
+            Sentence(
+                "free drives would have to give {share} of the greatest, in place of nothing", share=share
+            ),
+        )
     if results.second is not None:
         yield Fact(Sentence("reduced equation"), _second_route(results))
 
@@ -200,29 +219,6 @@ def _range(coordinates: _Coordinates, name: str) -> Text:
     return Sentence("{least} to {greatest}, {last} at the end", least=least, greatest=greatest, last=last)
 
 
-def _works(run: xr.Dataset) -> Text:
-    drive, friction, others = (
-        Number(float(run[name].values[-1]) + 0.0 if run.sizes["sample"] else 0.0, "J") for name in WORKS
-    )
-    return Sentence(
-        "drive {drive}, friction {friction}, other loads {others}",
-        drive=drive,
-        friction=friction,
-        others=others,
-    )
-
-
-def _energies(run: xr.Dataset) -> Text:
-    kinetic, potential = (run[name].values for name in ("kinetic_energy", "potential_energy"))
-    gained = float(potential[-1] - potential[0]) + 0.0 if potential.size else 0.0
-    return Sentence(
-        "kinetic {kinetic} at the end, potential {potential}, residual {residual}",
-        kinetic=Number(float(kinetic[-1]) if kinetic.size else 0.0, "J"),
-        potential=Number(gained, "J", "+.6g" if gained else "g"),
-        residual=Number(float(run.attrs["worst_energy_residual"]), "J", ".1e"),
-    )
-
-
 def _residuals(run: xr.Dataset) -> Text:
     place, speed = (
         float(np.max(run[name].values, initial=0.0)) for name in ("residual", "velocity_residual")
@@ -234,14 +230,10 @@ def _residuals(run: xr.Dataset) -> Text:
     )
 
 
-def _happenings(run: xr.Dataset) -> Iterator[Fact]:
+def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     """When it passed a change point, or passed near one."""
-    names = str(run["occasion_kind"].attrs["flag_meanings"]).split()
-    kinds, times = (run[name].values.tolist() for name in ("occasion_kind", "occasion_time"))
-    for kind, time in islice(zip(kinds, times, strict=True), SHOWN):
-        yield Fact(HAPPENINGS[names[kind]], Sentence("at {time}", time=Number(time, "s")))
-    if len(kinds) > SHOWN:
-        yield Fact(NOTHING, Sentence("and {n} more", n=Number(len(kinds) - SHOWN, digits="d")))
+    times = run["occasion_time"].values.tolist()
+    return occasion_facts(run, OCCASIONS, [Sentence("at {time}", time=Number(time, "s")) for time in times])
 
 
 def _difference(results: SimulationResults) -> tuple[float, float, str, float]:
@@ -461,9 +453,7 @@ def _checks(results: SimulationResults) -> Iterator[Check]:
         float(np.max(run["kinetic_energy"].values)),
     ]
     yield Check(
-        Sentence(
-            "Residual of the energy balance over the whole motion: {share} of the greatest work or energy."
-        ),
+        RESIDUAL,
         float(np.abs(run["energy_residual"].values).max()),
         max(turned_over),
         max(steps, 1) * SAFETY * tolerance,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice
 from math import pi, tau
 from typing import TYPE_CHECKING
 
@@ -40,6 +39,17 @@ from centrode.sheets.texts import (
     Unit,
 )
 from centrode.views.columns import motion_table, rows_shown
+from centrode.views.energy_balance import (
+    ADAPTIVE,
+    ENERGIES_CAPTION,
+    ENERGIES_TITLE,
+    RESIDUAL,
+    STIFF,
+    WORKS,
+    energies_at_end,
+    occasion_facts,
+    works_at_end,
+)
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
 from centrode.views.multibody import multibody_sheet
 
@@ -52,12 +62,9 @@ if TYPE_CHECKING:
 
 NO_DEVIATION = 1e-6
 """A multiplier below this is rounding of the map's differences."""
-SHOWN = 8
-"""Occasions that are shown one by one."""
 EVALUATIONS = 12
 """Accelerations that a step of the adaptive scheme computes at least."""
 
-ADAPTIVE, STIFF = Name("DOP853"), Name("Radau")
 SCHEMES = {
     "adaptive": Sentence("adaptive ({solver})", solver=ADAPTIVE),
     "stiff": Sentence("for stiff laws ({solver})", solver=STIFF),
@@ -87,20 +94,20 @@ PANELS = {
     "simulation-phase": (("drive_speed",),),
     "simulation-energies": (
         ("kinetic_energy", "potential_energy"),
-        ("work_of_drive", "work_of_friction", "work_of_other_loads"),
+        WORKS,
         ("energy_residual",),
     ),
 }
 TITLES = {
     "simulation-speed": Sentence("Speed of the drive and the moments on it"),
     "simulation-phase": Sentence("Speed over the generalised coordinate"),
-    "simulation-energies": Sentence("Energies and works"),
+    "simulation-energies": ENERGIES_TITLE,
     "simulation-angles": Sentence("Speed of the drive and angles over its value"),
 }
 CAPTIONS: dict[str, Text] = {
     "simulation-speed": Sentence("Speed and acceleration of the drive, and the moments on it, over time"),
     "simulation-phase": Sentence("Speed over the generalised coordinate"),
-    "simulation-energies": Sentence("Energies and works over time"),
+    "simulation-energies": ENERGIES_CAPTION,
     "simulation-angles": Sentence(
         "Speed of the drive, angle $gamma$ of the coupler to the path of its hinge and angle $psi$ of the driven link "
         "over the generalised coordinate"
@@ -148,8 +155,8 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
             last=last,
         ),
     )
-    yield Fact(Sentence("works"), _works(run))
-    yield Fact(Sentence("energies"), _energies(run))
+    yield Fact(Sentence("works"), works_at_end(run))
+    yield Fact(Sentence("energies"), energies_at_end(run))
     yield from _occasions(run)
 
 
@@ -193,42 +200,15 @@ def _value(value: float, unit: str) -> Number:
     return Number(value, unit, ".9g", degrees_too=True)
 
 
-def _works(run: xr.Dataset) -> Text:
-    drive, friction, others = (
-        Number(float(run[name].values[-1]), "J")
-        for name in ("work_of_drive", "work_of_friction", "work_of_other_loads")
-    )
-    return Sentence(
-        "drive {drive}, friction {friction}, other loads {others}",
-        drive=drive,
-        friction=friction,
-        others=others,
-    )
-
-
-def _energies(run: xr.Dataset) -> Text:
-    kinetic, potential = (run[name].values for name in ("kinetic_energy", "potential_energy"))
-    residual = float(np.max(np.abs(run["energy_residual"].values)))
-    gained = float(potential[-1] - potential[0]) + 0.0
-    return Sentence(
-        "kinetic {kinetic} at the end, potential {potential}, residual {residual}",
-        kinetic=Number(float(kinetic[-1]), "J"),
-        potential=Number(gained, "J", "+.6g" if gained else "g"),
-        residual=Number(residual, "J", ".1e"),
-    )
-
-
 def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     """When and where it turned back, stuck, came to a limit."""
-    names = str(run["occasion_kind"].attrs["flag_meanings"]).split()
-    kinds = [names[k] for k in run["occasion_kind"].values.tolist()]
     unit = str(run["occasion_value"].attrs["units"])
     times, values = (run[name].values.tolist() for name in ("occasion_time", "occasion_value"))
-    for kind, time, value in islice(zip(kinds, times, values, strict=True), SHOWN):
-        place = Sentence("at {time}, drive at {value}", time=Number(time, "s"), value=_value(value, unit))
-        yield Fact(OCCASIONS[kind], place)
-    if len(kinds) > SHOWN:
-        yield Fact(NOTHING, Sentence("and {n} more", n=Number(len(kinds) - SHOWN, digits="d")))
+    places: list[Text] = [
+        Sentence("at {time}, drive at {value}", time=Number(time, "s"), value=_value(value, unit))
+        for time, value in zip(times, values, strict=True)
+    ]
+    return occasion_facts(run, OCCASIONS, places)
 
 
 def _regime_facts(results: SimulationResults) -> tuple[Fact, ...]:
@@ -401,9 +381,7 @@ def _energy_check(results: SimulationResults) -> Iterator[Check]:
     ]
     steps = int(run.attrs["evaluations"]) / EVALUATIONS
     yield Check(
-        Sentence(
-            "Residual of the energy balance over the whole motion: {share} of the greatest work or energy."
-        ),
+        RESIDUAL,
         float(np.abs(run["energy_residual"].values).max()),
         float(max(works)),
         steps * results.settings.tolerance,

@@ -29,7 +29,9 @@ def test_states_are_those_of_each_for_itself() -> None:
         )
         own = ct.parse_mechanism(text)
         one = ct.simulate(own, settings(own), at=[0.5, 1.0])
-        assert np.max(np.abs(one.generalised_coordinate.values - many.generalised_coordinate.values[k])) <= 1e-9
+        assert (
+            np.max(np.abs(one.generalised_coordinate.values - many.generalised_coordinate.values[k])) <= 1e-9
+        )
     assert many.attrs["worst_energy_residual"] <= 1e-8
     assert many["links.AB.length"].attrs["units"] == "m"
 
@@ -40,7 +42,10 @@ def test_a_chain_without_drives() -> None:
     text = DOUBLE_PENDULUM.replace("[links.AB]\nlength = 1\nmass = 1", "[links.AB]\nlength = 1\nmass = 1.5")
     own = ct.parse_mechanism(text)
     one = ct.simulate(own, settings(own), at=[1.0])
-    assert np.max(np.abs(one.generalised_coordinate.values[0] - many.generalised_coordinate.values[1, 0])) <= 1e-9
+    assert (
+        np.max(np.abs(one.generalised_coordinate.values[0] - many.generalised_coordinate.values[1, 0]))
+        <= 1e-9
+    )
 
 
 def test_change_points_are_passed_one_by_one() -> None:

@@ -60,8 +60,11 @@ def test_a_drive_keeps_its_law(law: str) -> None:
     at = np.array([0.3, 1.0, 1.9])
     run = ct.simulate(mechanism, at=at)
     alone = ct.parse_mechanism(
-        ARM.format(law=LAWS[law]).replace("angle = 0.3", "") + '[[drives]]\nlink = "AB"\nstart = 0.3\nspeed = 0\n'
+        ARM.format(law=LAWS[law]).replace("angle = 0.3", "")
+        + '[[drives]]\nlink = "AB"\nstart = 0.3\nspeed = 0\n'
     )
     motion = ct.motion(alone, at=at)
-    assert np.abs(run["drive_value"].values[:, 0] - motion["drive_value"].sel(drive="OA").values).max() <= 1e-9
+    assert (
+        np.abs(run["drive_value"].values[:, 0] - motion["drive_value"].sel(drive="OA").values).max() <= 1e-9
+    )
     assert run.attrs["worst_energy_residual"] <= 1e-8

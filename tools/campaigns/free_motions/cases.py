@@ -198,11 +198,11 @@ CAMPAIGN = Campaign(
     about=(
         "Random mechanisms of rods of 1 kg/m (dyads with gears and rolling wheels, pendulums hung on them, higher "
         "groups, parallel cranks; every sixth is spherical) fall from rest for ten seconds by forward dynamics. Pins "
-        "that no link carries have a roller in the plane, and are left out on the sphere. After a second all points are "
-        "compared with those by dense equations in absolute coordinates, which SciPy integrates and which share no formula with the program "
-        "(`tools/campaigns/free_motions/dense_equations.py`); from there each motion runs backwards to its start. "
-        "A motion that ends early is a fault, but for change points in which two or more closures are lost at once: "
-        "those are counted as refused, each by name."
+        "that no link carries have a roller in the plane, and are left out on the sphere. After a second all points "
+        "are compared with those by dense equations in absolute coordinates, which SciPy integrates and which share "
+        "no formula with the program (`tools/campaigns/free_motions/dense_equations.py`); from there each motion runs "
+        "backwards to its start. A motion that ends early is a fault, but for change points in which two or more "
+        "closures are lost at once: those are counted as refused, each by name."
     ),
     columns={
         "drift": f"greatest change of the energy over m g l; at most {DRIFT:g}",

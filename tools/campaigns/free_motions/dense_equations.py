@@ -32,7 +32,7 @@ APART = 3e-3
 """Their step, of unit coordinates."""
 RANK = 1e-9
 """Equations below this share of the greatest singular value repeat others."""
-MOST_STEPS = 4000
+MOST_STEPS = 500
 
 
 class TooManySteps(Exception):
@@ -136,9 +136,7 @@ class DenseMechanism:
     turns : links -> angle [rad] in the plane, cosines of the axes (3, 3) on the sphere, at the start
     """
 
-    def __init__(
-        self, parts: Parts, places: Mapping[str, Sequence[float]], turns: Mapping[str, Any]
-    ) -> None:
+    def __init__(self, parts: Parts, places: Mapping[str, Sequence[float]], turns: Mapping[str, Any]) -> None:
         self.parts, self.on_sphere = parts, parts.get("space") == "sphere"
         self.bodies = list(parts["links"])
         self.each = 9 if self.on_sphere else 3
@@ -147,7 +145,9 @@ class DenseMechanism:
             name: unit(at) if self.on_sphere else np.array(at, dtype=float)
             for name, at in parts["frame"]["points"].items()
         }
-        self.centres = {} if self.on_sphere else {name: np.array(parts["links"][name]["centre"]) for name in self.bodies}
+        self.centres = (
+            {} if self.on_sphere else {name: np.array(parts["links"][name]["centre"]) for name in self.bodies}
+        )
         self.kept: dict[Any, Any] = {}
         self.turned: tuple[Array, Array, Array] | None = None
         """Coordinates that were looked at last, and cosines and sines of their angles."""
@@ -256,9 +256,7 @@ class DenseMechanism:
         if self.on_sphere:
             for body in self.bodies:
                 a = self.axes(q, body)
-                found += [
-                    np.sum(a[i] * a[j], axis=0) - float(i == j) for i in range(3) for j in range(i, 3)
-                ]
+                found += [np.sum(a[i] * a[j], axis=0) - float(i == j) for i in range(3) for j in range(i, 3)]
         for guide in self.parts.get("guides", ()):
             found += self._circle(q, guide) if self.on_sphere else self._line(q, guide)
         for number, gear in enumerate(self.parts.get("gears", ())):
@@ -315,7 +313,11 @@ class DenseMechanism:
         begun = self.kept.setdefault(
             ("bearing", number),
             (
-                float(np.real(np.arctan2(np.real(apart[1]), np.real(apart[0]))[0] - np.real(self.angle(q, on)[0]))),
+                float(
+                    np.real(
+                        np.arctan2(np.real(apart[1]), np.real(apart[0]))[0] - np.real(self.angle(q, on)[0])
+                    )
+                ),
                 float(np.real(turned[0])),
             ),
         )

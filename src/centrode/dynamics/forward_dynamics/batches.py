@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -92,9 +94,7 @@ def start_of_many(
     for constraint in constraints_of(free.mechanism):
         if isinstance(constraint, AngleDrive | DisplacementDrive | DistanceDrive):
             drive = next(one for one in free.mechanism.drives if one.id == constraint.drive)
-            held.append(
-                KeptDrive(constraint, DrivenBy(drive, Uniform(speeds[drive.id]), values[drive.id]))
-            )
+            held.append(KeptDrive(constraint, DrivenBy(drive, Uniform(speeds[drive.id]), values[drive.id])))
     started = replace(equations, kept=tuple(held))
     coordinates = [np.asarray(x) for x in start.coordinates]
     rest = [0.0] * len(coordinates)
@@ -184,13 +184,11 @@ def integrate_many(
     with ThreadPoolExecutor(threads) as pool:
         for number, instant in enumerate(instants):
             parameters[CONTROLS.index(END)] = instant
-            parts = pool.map(
-                lambda k: integrator.run(
-                    parameters[:, bounds[k] : bounds[k + 1]], state[:, bounds[k] : bounds[k + 1]], ATTEMPTS
-                ),
-                range(threads),
-            )
-            state = np.concatenate(list(parts), axis=1)
+            jobs = [
+                pool.submit(integrator.run, parameters[:, low:high], state[:, low:high], ATTEMPTS)
+                for low, high in pairwise(bounds.tolist())
+            ]
+            state = np.concatenate([job.result() for job in jobs], axis=1)
             attempts += state[2]
             arrived = closes & (state[0] >= instant)
             rows[number][:, arrived] = state[HEADER:, arrived]
@@ -198,7 +196,7 @@ def integrate_many(
                 progress((number + 1) / len(instants))
     ended = np.where(closes, ENDS.index(DURATION), ENDS.index(NOT_ASSEMBLED)).astype(np.int8)
     for lane in np.flatnonzero(closes & (state[0] < instants[-1])):
-        own = free.with_numbers(map_equations(equations, lambda x, k=lane: _of_lane(x, k)))
+        own = free.with_numbers(map_equations(equations, partial(_of_lane, int(lane))))
         begun_there = InitialState(begun.coordinates[:, lane].copy(), begun.speeds[:, lane].copy())
         steps = own.integration.explicit_steps(begun_there, float(instants[-1]), tolerance, executor)
         reached = instants[instants <= steps.rows[0, -1]]
@@ -224,7 +222,7 @@ def integrate_many(
     )  # fmt: skip
 
 
-def _of_lane(number: Any, lane: int) -> Any:
+def _of_lane(lane: int, number: Any) -> Any:
     """The number of one lane."""
     values = np.asarray(number) if isinstance(number, np.ndarray) else number
     return float(values[lane]) if isinstance(values, np.ndarray) and values.ndim else number

@@ -69,7 +69,7 @@ class Detour:
         return self.centre + self.radius
 
     @property
-    def is_passed(self) -> bool:
+    def is_analytic(self) -> bool:
         """Whether everything is analytic on the disc."""
         return self.singular < SINGULAR and self.unresolved < UNRESOLVED
 
@@ -106,7 +106,7 @@ class HalfCircles:
         else:
             values = self._by_python(parameters, time, carried, ahead)
         if not np.all(np.isfinite(values)):
-            return Detour(time + ahead, ahead, np.zeros((len(self.problem.followed), 1)), np.inf, np.inf)
+            return Detour(time + ahead, ahead, np.zeros((len(self.problem.unknowns), 1)), np.inf, np.inf)
         return _detour(time + ahead, ahead, values, measured)
 
     @property
@@ -118,7 +118,7 @@ class HalfCircles:
         return PythonIntegration(self.problem, is_complex=True)
 
     def _by_python(self, parameters: Array, time: float, carried: Array, radius: float) -> Complex:
-        count, step = len(self.problem.followed), np.pi / POINTS
+        count, step = len(self.problem.unknowns), np.pi / POINTS
         given = [float(x) for x in parameters]
         here: list[Any] = [complex(x) for x in carried]
         fixed = here[count:]
@@ -158,7 +158,7 @@ class HalfCircles:
         )
 
     def _by_machine_code(self, parameters: Array, time: float, carried: Array, radius: float) -> Complex:
-        problem, followed = self._complex_problem, self.problem.followed
+        problem, followed = self._complex_problem, self.problem.unknowns
         values = dict(zip(self.problem.carried, carried, strict=True))
         given = dict(zip(self.problem.parameters, parameters, strict=True))
         given |= {CENTRE: time + radius, RADIUS: radius, END: np.pi, SMALLEST: 0.0}

@@ -30,8 +30,8 @@ from centrode.dynamics.forward_dynamics.elimination import (
 )
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.spanning_tree import (
+    JointValues,
     SpanningTree,
-    Values,
     jets_along,
     rotor_jets,
 )
@@ -171,7 +171,7 @@ class EquationsOfMotion:
         depends = self.tree.depends
         return tuple((mass, depends.get(Entity("link", mass.link), frozenset())) for mass in self.masses)
 
-    def terms(self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number) -> Terms:
+    def terms(self, m: Namespace, values: JointValues, speeds: Sequence[Number], time: Number) -> Terms:
         """The equations at one state."""
         jets = JetFunctions(m)
         laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
@@ -214,7 +214,7 @@ class EquationsOfMotion:
         return any("q" in load.term.amount.uses for load in self.loads)
 
     def _column(
-        self, jets: JetFunctions, values: Values, plain: Positions, number: int, time: Number
+        self, jets: JetFunctions, values: JointValues, plain: Positions, number: int, time: Number
     ) -> JointState:
         """The state that changes along one coordinate."""
         unit = Jet((values.coordinates[number], 1.0))
@@ -223,7 +223,7 @@ class EquationsOfMotion:
         rotors = dict(values.rotors)
         if number in rotors:
             rotors[number] = rotor_jets(rotors[number], unit)
-        at = self.tree.positions_along(jets, self.numbers, Values(coordinates, rotors), plain, number)
+        at = self.tree.positions_along(jets, self.numbers, JointValues(coordinates, rotors), plain, number)
         return self._state(jets, at, time, 1)
 
     def _inertia(self, state: JointState, columns: Sequence[JointState]) -> tuple[Entries, Vector]:
@@ -236,10 +236,7 @@ class EquationsOfMotion:
         parts += [
             (
                 [(shaft.inertia, state.drive(shaft.drive))],
-                {
-                    k: [(shaft.inertia, columns[k].drive(shaft.drive))]
-                    for k in self._reach(shaft.coordinate)
-                },
+                {k: [(shaft.inertia, columns[k].drive(shaft.drive))] for k in self._reach(shaft.coordinate)},
             )
             for shaft in self.shafts
         ]
@@ -337,7 +334,7 @@ class EquationsOfMotion:
         return system.solve({}, terms.values)[0]
 
     def consistent_speeds(
-        self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number, system: MassSystem
+        self, m: Namespace, values: JointValues, speeds: Sequence[Number], time: Number, system: MassSystem
     ) -> list[Number]:
         """Speeds that keep the closures at closed coordinates, changed least in the measure of M."""
         jets = JetFunctions(m)
@@ -353,7 +350,7 @@ class EquationsOfMotion:
         return [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
 
     def energies(
-        self, m: Namespace, values: Values, speeds: Sequence[Number], time: Number
+        self, m: Namespace, values: JointValues, speeds: Sequence[Number], time: Number
     ) -> tuple[Number, Number]:
         """Kinetic and potential energy [J]."""
         jets = JetFunctions(m)
@@ -380,11 +377,11 @@ class EquationsOfMotion:
                 total = total + energy(load.term.coordinate.value(state))
         return total
 
-    def state(self, m: Namespace, values: Values, rates: Sequence[Jet], time: Number) -> JointState:
+    def state(self, m: Namespace, values: JointValues, rates: Sequence[Jet], time: Number) -> JointState:
         """The state along time where coordinates are jets with all derivatives that are known."""
         jets = JetFunctions(m)
         laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
-        moving = Values(
+        moving = JointValues(
             list(rates), {k: _rotor_of_jet(jets, values.rotors[k], rates[k]) for k in self.tree.angles}
         )
         return self._state(jets, self.tree.positions(jets, self.numbers, moving, laws), time, 2)

@@ -13,10 +13,10 @@ import numpy.typing as npt
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     CarriedLink,
     FreePoint,
+    JointValues,
     SlidPoint,
     SpanningTree,
     TurnedLink,
-    Values,
     rotor_jets,
 )
 from centrode.errors import InputError
@@ -79,7 +79,7 @@ def residuals_and_rows(
         changed[k] = unit
         if k in rotors:
             rotors[k] = rotor_jets(rotors[k], unit)
-        moved = tree.positions_along(JETS, numbers, Values(changed, rotors), at, k)
+        moved = tree.positions_along(JETS, numbers, JointValues(changed, rotors), at, k)
         first = 0
         for constraint, own in zip(constraints, residuals, strict=True):
             if k in tree.dependence(constraint):

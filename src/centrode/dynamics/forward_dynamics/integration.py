@@ -230,9 +230,9 @@ class MotionIntegration:
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or away > WILD
                 ended = BLOW_UP if wild else STEP_SIZE
-                cause = _("at {time:.9g} s the step became as small as {step:.3g} s").format(
-                    time=time, step=size
-                )
+                cause = _(
+                    "at {time:.9g} s the step became as small as {step:.3g} s; {part} changes its speed fastest there"
+                ).format(time=time, step=size, part=self._fastest(state))
                 break
             if steps >= MOST_STEPS:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
@@ -256,7 +256,7 @@ class MotionIntegration:
         followed = PythonIntegration(self.problem)
         parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
         carried = self.carried_values(start)
-        names, count = self.names, len(self.problem.followed)
+        names, count = self.names, len(self.problem.unknowns)
         angles = np.array(self.equations.tree.angles, dtype=np.intp)
         own = [
             *range(*names.part(names.coordinates).indices(count)),
@@ -317,7 +317,7 @@ class MotionIntegration:
         for name in guarded:
             state[HEADER + self.problem.carried.index(name)] = NEVER if name == LIMIT else 0.0
         found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)[HEADER:]
-        count = len(self.problem.followed)
+        count = len(self.problem.unknowns)
         for detour in steps.detours:
             inside = (times > detour.begin) & (times < detour.end)
             found[:count, inside] = detour.at(times[inside])
@@ -383,13 +383,13 @@ class MotionIntegration:
         units = units_of(self.equations.tree, self.equations.numbers)
         measured = [(self.names.part(kind), units) for kind in (self.names.coordinates, self.names.speeds)]
         detour = self._half_circles.around(parameters[:, 0], time, state[HEADER:, 0], ahead, measured)
-        if not detour.is_passed:
+        if not detour.is_analytic:
             if near < LOST:
                 what = _("a change point at {time:.9g} s through which no smooth motion leads")
                 return what.format(time=detour.centre)
             state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
             return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
-        count = len(self.problem.followed)
+        count = len(self.problem.unknowns)
         before = self._energy(state[HEADER:, 0], time)
         landed = detour.at(np.array([detour.end]))[:, 0]
         values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(
@@ -414,6 +414,16 @@ class MotionIntegration:
         q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
         kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
+
+    def _fastest(self, state: Array) -> str:
+        """Name of the coordinate whose speed changes most, or is the greatest."""
+        names, tree = self.names, self.equations.tree
+        q, w = (list(state[HEADER:, 0][names.part(kind)]) for kind in (names.coordinates, names.speeds))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, tree.values(ARRAYS, q), w, float(state[0, 0]))
+            accelerations = np.array(self.equations.accelerations(ARRAYS, terms)[0], dtype=np.float64)
+        sizes = np.abs(accelerations) / units_of(tree, self.equations.numbers)
+        return tree.coordinates[int(np.argmax(np.nan_to_num(sizes, nan=np.inf)))].name
 
     def _farthest(self, state: Array, rate: float) -> float:
         """The greatest displacement over the greatest length, or speed over what speeds are compared with."""

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 from centrode.dynamics.forward_dynamics.elimination import is_zero
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Flags
-from centrode.dynamics.forward_dynamics.spanning_tree import Rotor, Values
+from centrode.dynamics.forward_dynamics.spanning_tree import JointValues, Rotor
 from centrode.dynamics.loads import EnergyClass
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.initial_value_problems import (
@@ -73,7 +73,7 @@ class MotionNames:
         )
 
     @property
-    def followed(self) -> tuple[str, ...]:
+    def unknowns(self) -> tuple[str, ...]:
         """All that is followed, in order."""
         return (*self.coordinates, *self.cosines, *self.sines, *self.speeds, *self.works)
 
@@ -81,7 +81,7 @@ class MotionNames:
         """Where some of them stand in a row that has all of them."""
         if not names:
             return slice(0, 0)
-        first = self.followed.index(names[0])
+        first = self.unknowns.index(names[0])
         return slice(first, first + len(names))
 
 
@@ -104,7 +104,7 @@ class Rates:
 def rates_of(
     m: Namespace,
     equations: EquationsOfMotion,
-    values: Values,
+    values: JointValues,
     speeds: Sequence[Number],
     time: Number,
     flags: Flags | None = None,
@@ -140,7 +140,7 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
     rows = sorted(equations.dependent)
     flags = {row: m.less(0.5, variable(name)) for row, name in zip(rows, names.flags, strict=True)}
     time = variable(TIME)
-    found = rates_of(m, equations, Values(coordinates, rotors), speeds, time, flags or None)
+    found = rates_of(m, equations, JointValues(coordinates, rotors), speeds, time, flags or None)
     rates: dict[str, Number] = dict(zip(names.coordinates, speeds, strict=True))
     rates |= {name: -(speeds[k] * rotors[k][1]) for k, name in zip(tree.angles, names.cosines, strict=True)}
     rates |= {name: speeds[k] * rotors[k][0] for k, name in zip(tree.angles, names.sines, strict=True)}
@@ -149,7 +149,7 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
     closing = _closing(equations, names, coordinates, speeds, time)
     watched = GUARD in closing
     early = (*CONTROLS, *parameters)
-    turned = [(m.cos(coordinates[k]), m.sin(coordinates[k])) for k in tree.angles]
+    turned = [(as_node(m.cos(coordinates[k])), as_node(m.sin(coordinates[k]))) for k in tree.angles]
     return InitialValueProblem(
         early,
         without_unit_squares({name: as_node(x) for name, x in rates.items()}, list(rotors.values()), early),
@@ -178,7 +178,7 @@ def _closing(
         shift = equations.shift_to_close(terms, system)
         q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
         rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
-        w = equations.consistent_speeds(m, Values(q, rotors), speeds, time, system)
+        w = equations.consistent_speeds(m, JointValues(q, rotors), speeds, time, system)
         counted = {
             name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
             for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
@@ -210,7 +210,8 @@ def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[
         INDEPENDENCE: independence,
         AHEAD: ahead,
         LOOKED: looked,
-        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, NEVER),
+        # independence grows as the angle from a change point does: a shorter step passes over none
+        LIMIT: m.where(m.less(independence, NEAR), 0.5 * ahead, 0.5 * independence / fastest),
         GUARD: m.where(near, 1.0, 0.0),
     }
 

@@ -67,7 +67,7 @@ class JointCoordinate:
 
 
 @dataclass(frozen=True)
-class Values:
+class JointValues:
     """Values of all coordinates over some algebra, with cosine and sine of those that are angles."""
 
     coordinates: Sequence[Number]
@@ -101,7 +101,7 @@ class TurnedLink:
     def needs(self) -> tuple[Entity, ...]:
         return (Entity("point", self.pivot), Entity("link", self.base))
 
-    def put(self, m: Namespace, numbers: Dimensions, values: Values, at: Positions) -> None:
+    def put(self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions) -> None:
         local, place, rotor = numbers.local[self.link], at.points[self.pivot], values.rotors[self.number]
         if not self.end:
             at.poses[self.link] = pose_with_point(local[self.pivot], place, rotor)
@@ -146,7 +146,7 @@ class CarriedLink:
     def needs(self) -> tuple[Entity, ...]:
         return (Entity("point", self.pivot), Entity("link", self.base))
 
-    def put(self, m: Namespace, numbers: Dimensions, values: Values, at: Positions) -> None:
+    def put(self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions) -> None:
         turn = numbers.turn[self.guide]
         local, base = numbers.local[self.link][self.pivot], at.poses[self.base]
         at.poses[self.link] = numbers.space.turned_pose(m, base, turn, local, at.points[self.pivot], None)
@@ -169,7 +169,7 @@ class CarriedPoint:
     def needs(self) -> tuple[Entity, ...]:
         return (Entity("link", self.link),)
 
-    def put(self, m: Namespace, numbers: Dimensions, values: Values, at: Positions) -> None:
+    def put(self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions) -> None:
         at.points[self.point] = numbers.space.place(
             m, at.poses[self.link], numbers.local[self.link][self.point]
         )
@@ -192,7 +192,7 @@ class SlidPoint:
     def needs(self) -> tuple[Entity, ...]:
         return (Entity("link", self.base),)
 
-    def put(self, m: Namespace, numbers: Dimensions, values: Values, at: Positions) -> None:
+    def put(self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions) -> None:
         at.points[self.point] = numbers.space.place_at_slide(
             m, at.poses[self.base], numbers.curve(self.guide), values.coordinates[self.number]
         )
@@ -213,7 +213,7 @@ class FreePoint:
     def needs(self) -> tuple[Entity, ...]:
         return ()
 
-    def put(self, m: Namespace, numbers: Dimensions, values: Values, at: Positions) -> None:
+    def put(self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions) -> None:
         at.points[self.point] = values.coordinates[self.first], values.coordinates[self.first + 1]
 
 
@@ -255,12 +255,14 @@ class SpanningTree:
         """Numbers of the coordinates that are angles."""
         return tuple(k for k, one in enumerate(self.coordinates) if one.kind == "angle")
 
-    def values(self, m: Namespace, coordinates: Sequence[Number]) -> Values:
+    def values(self, m: Namespace, coordinates: Sequence[Number]) -> JointValues:
         """The values with cosine and sine of angles."""
-        return Values(coordinates, {k: (m.cos(coordinates[k]), m.sin(coordinates[k])) for k in self.angles})
+        return JointValues(
+            coordinates, {k: (m.cos(coordinates[k]), m.sin(coordinates[k])) for k in self.angles}
+        )
 
     def positions(
-        self, m: Namespace, numbers: Dimensions, values: Values, drives: Mapping[str, Number]
+        self, m: Namespace, numbers: Dimensions, values: JointValues, drives: Mapping[str, Number]
     ) -> Positions:
         """Places of everything at values of the coordinates."""
         at = Positions.of_frame(numbers, drives, m)
@@ -269,7 +271,7 @@ class SpanningTree:
         return at
 
     def positions_along(
-        self, m: Namespace, numbers: Dimensions, values: Values, at: Positions, number: int
+        self, m: Namespace, numbers: Dimensions, values: JointValues, at: Positions, number: int
     ) -> Positions:
         """Positions whose parts that depend on one coordinate are placed anew, the others being those of `at`."""
         moved = at.copy()
@@ -439,13 +441,13 @@ class _Builder:
 # Values of coordinates as jets, with the rotors that belong to them.
 
 
-def jets_along(tree: SpanningTree, values: Values, rates: Sequence[Number], order: int) -> Values:
+def jets_along(tree: SpanningTree, values: JointValues, rates: Sequence[Number], order: int) -> JointValues:
     """The coordinates as jets that change by these rates: value, rate, and no more, up to an order."""
     jets = [
         Jet((value, rate, *([0.0] * order))[: order + 1])
         for value, rate in zip(values.coordinates, rates, strict=True)
     ]
-    return Values(jets, {k: rotor_jets(values.rotors[k], jets[k]) for k in tree.angles})
+    return JointValues(jets, {k: rotor_jets(values.rotors[k], jets[k]) for k in tree.angles})
 
 
 def rotor_jets(rotor: Rotor, angle: Jet) -> Rotor:

@@ -67,7 +67,7 @@ def simulate_many(
     return many_dataset(setting, numbers, motions)
 
 
-def _threads(given: int | None) -> int:
+def _threads(given: object) -> int:
     if given is None:
         return max(1, min(os.cpu_count() or 1, MOST_THREADS))
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= MOST_THREADS:
@@ -76,7 +76,7 @@ def _threads(given: int | None) -> int:
     return given
 
 
-def _numbers(setting: MultibodySetting, vary: Vary) -> dict[str, Array]:
+def _numbers(setting: MultibodySetting, vary: Any) -> dict[str, Array]:
     """Values (mechanisms) of every path [SI]; InputError for what no mechanism of this structure can have."""
     if not isinstance(vary, Mapping) or not vary:
         raise InputError(
@@ -116,9 +116,7 @@ def _values(mechanism: Mechanism, path: str, given: Any) -> Array:
     return values
 
 
-def many_dataset(
-    setting: MultibodySetting, numbers: Mapping[str, Array], motions: FreeMotions
-) -> xr.Dataset:
+def many_dataset(setting: MultibodySetting, numbers: Mapping[str, Array], motions: FreeMotions) -> xr.Dataset:
     """The labelled result: the numbers that vary along `mechanism`, states at the instants of `sample`."""
     mechanism, free = setting.mechanism, setting.free
     across = ("mechanism", "sample")

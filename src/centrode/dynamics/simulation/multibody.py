@@ -42,9 +42,7 @@ if TYPE_CHECKING:
 Array: TypeAlias = npt.NDArray[np.float64]
 
 # most motions are looked at without their reactions
-_reactions = functools.partial(
-    importlib.import_module, "centrode.dynamics.simulation.reactions_in_motion"
-)
+_reactions = functools.partial(importlib.import_module, "centrode.dynamics.simulation.reactions_in_motion")
 
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
@@ -223,9 +221,7 @@ def simulate_multibody(
 # The result with names.
 
 
-def multibody_dataset(
-    setting: MultibodySetting, course: Trajectory, reactions: bool = False
-) -> xr.Dataset:
+def multibody_dataset(setting: MultibodySetting, course: Trajectory, reactions: bool = False) -> xr.Dataset:
     """The labelled result of a course, with the reactions in its joints if they are requested."""
     variables = {
         **_coordinates_in_time(setting, course),

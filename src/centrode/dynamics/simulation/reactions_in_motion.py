@@ -96,7 +96,9 @@ def reactions_in_motion(free: FreeMotion, course: Trajectory) -> ReactionsInMoti
     for name, felt in undetermined.items():
         if name in parts:
             parts[name][:, felt] = np.nan
-    hinges = np.all(np.isfinite(parts["joint_force"][good]), axis=(0, 2)) if good.any() else np.zeros(len(sides))
+    hinges = (
+        np.all(np.isfinite(parts["joint_force"][good]), axis=(0, 2)) if good.any() else np.zeros(len(sides))
+    )
     return ReactionsInMotion(
         sides,
         parts,
@@ -154,9 +156,7 @@ def _acting(free: FreeMotion, state: JointState) -> list[Wrench]:
     pulls = [
         pull.times(load.term.strength(state)) for load in equations.loads for pull in load.term.pulls(state)
     ]
-    pulls += [
-        pull for action in inertia_forces_of(state, equations.masses, None) for pull in action.pulls
-    ]
+    pulls += [pull for action in inertia_forces_of(state, equations.masses, None) for pull in action.pulls]
     for shaft in equations.shafts:
         moment = -shaft.inertia * state.drive(shaft.drive).derivative(2)
         pulls += [pull.times(moment) for pull in shaft.coordinate.pulls(state)]
@@ -192,4 +192,3 @@ def _with_all_drives(free: FreeMotion) -> Mechanism:
         for one in chosen
     )
     return mechanism.model_copy(update={"drives": (*mechanism.drives, *added)})
-

@@ -50,6 +50,7 @@ def simulation_results(
     *,
     settings: Simulation | None = None,
     motion: bool = False,
+    reactions: bool = False,
     progress: Tell | None = None,
     **changes: Any,
 ) -> SimulationResults:
@@ -60,6 +61,7 @@ def simulation_results(
     samples : evenly spaced in time
     settings : in place of those of the description
     motion : also places, velocities and accelerations of everything
+    reactions : also the reactions in all joints, by the equations of all links
     progress : called with the share that is done
     changes : `duration`, `turns`, `driving`, `speed`, `speeds`, `keeps`, `equations`, `scheme`, `steps`, `tolerance`,
         `at` in place of those of the settings
@@ -78,7 +80,8 @@ def simulation_results(
     duration
     """
     used = changed_settings(mechanism, samples, settings=settings, **changes)
-    return _with_regime(mechanism, used, simulate(mechanism, used, motion=motion, progress=progress))
+    run = simulate(mechanism, used, motion=motion, reactions=reactions, progress=progress)
+    return _with_regime(mechanism, used, run)
 
 
 def results_of_simulation(mechanism: Mechanism, run: xr.Dataset) -> SimulationResults:
@@ -143,7 +146,8 @@ def changed_settings(
 
 def simulation_extent(mechanism: Mechanism, samples: int | None = None, **options: Any) -> tuple[int, float]:
     """Samples of a simulation, and turns of the drive at the speed of the start up to where it ends."""
-    options.pop("motion", None)
+    for flag in ("motion", "reactions"):
+        options.pop(flag, None)
     settings = changed_settings(mechanism, samples, **options)
     ends = [settings.turns] if settings.turns is not None else []
     if settings.duration is not None and mechanism.drives:

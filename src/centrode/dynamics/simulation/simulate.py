@@ -385,10 +385,10 @@ def simulate(
     Returns
     -------
     Dataset
-        With `vary` coordinates, velocities and energies of every `mechanism` at the instants of `at`, at the end
-        without it; `ended` says how, `reached` [s] how far each came. Otherwise value, speed and acceleration of the drive, moments, works, energies and powers over time, `occasion_...` and
+        Value, speed and acceleration of the drive, moments, works, energies and powers over time, `occasion_...` and
         what ended it (docs: simulation). Speeds and moments count along the coordinate of the drive, `turned` in the
-        sense in which it sets out.
+        sense in which it sets out. With `vary` coordinates, velocities and energies of every `mechanism` at the
+        instants of `at`, at the end without it; `ended` says how, `reached` [s] how far each came.
 
     Raises
     ------
@@ -424,9 +424,7 @@ def simulate(
     if vary is not None:
         if settings is None:
             raise _without_settings()
-        many: xr.Dataset = _many().simulate_many(
-            mechanism, settings, vary, at, executor, progress, threads
-        )
+        many: xr.Dataset = _many().simulate_many(mechanism, settings, vary, at, executor, progress, threads)
         return many
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
         run: xr.Dataset = _multibody().simulate_multibody(

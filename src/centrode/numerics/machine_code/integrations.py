@@ -136,7 +136,7 @@ class _Writer:
         self.code = Code(self.block, Vector("double", width), has_fma)
         # the sums over stages take as many numbers at once as a register holds
         self.wide = Code(self.block, Vector("double", width if width > 1 else chunk), has_fma)
-        numbers = len(problem.followed) * width
+        numbers = len(problem.unknowns) * width
         self.length = -(-numbers // self.wide.vector.width) * self.wide.vector.width
         graphs = (problem.of_rates, problem.of_closing, problem.of_control)
         # everything may be rounded once where a product is summed: nothing is decided by a last bit
@@ -248,7 +248,7 @@ class _Writer:
         self._compute_early()
         self._store(self._load(self._row("state", 0, lane)), "%time")
         self._store(self._load(self._row("state", 1, lane)), "%size")
-        followed = len(problem.followed)
+        followed = len(problem.unknowns)
         for k in range(len(problem.carried)):
             value = self._load(self._row("state", HEADER + k, lane))
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
@@ -394,7 +394,9 @@ class _Writer:
         for stage, rate in rates.items():
             if weights[stage]:
                 weight = wide.constant(weights[stage])
-                total = wide.multiply(weight, rate) if total is None else wide.multiply_add(weight, rate, total)
+                total = (
+                    wide.multiply(weight, rate) if total is None else wide.multiply_add(weight, rate, total)
+                )
         assert total is not None
         return total
 
@@ -403,7 +405,7 @@ class _Writer:
         values = {variable(STEP): step, variable(SIZE): size, **self._read("%stage")}
         wanted = set(self.problem.of_control.variables)
         for prefix, array in ((OF_FIFTH, "%fifth"), (OF_THIRD, "%third"), (BEFORE, "%now")):
-            for k, name in enumerate(self.problem.followed):
+            for k, name in enumerate(self.problem.unknowns):
                 if prefix + name in wanted:
                     values[variable(prefix + name)] = self._load(self._at(array, k * self.width))
         operating = self._operating(values)
@@ -422,7 +424,7 @@ class _Writer:
         """What the step ends with, in the lanes that took it."""
         values = {variable(TIME): time, variable(STEP): step, **self._read("%stage")}
         operating = self._operating(values)
-        graph, followed = self.problem.of_closing, len(self.problem.followed)
+        graph, followed = self.problem.of_closing, len(self.problem.unknowns)
         for node in graph.order:
             if node not in operating.values:
                 operating.compute(node)
@@ -444,7 +446,7 @@ class _Writer:
         first = block.put(f"mul i64 {written}, %output_row")
         row = self._at("%outputs", first)
         self._store(time, row)
-        followed = len(self.problem.followed)
+        followed = len(self.problem.unknowns)
         for k in range(len(self.problem.carried)):
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
             self._store(self._load(self._at(array, place)), self._at(row, k + 1))
@@ -458,7 +460,7 @@ class _Writer:
     def _read(self, array: Value) -> dict[Node, Value]:
         values = {
             variable(name): self._load(self._at(array, k * self.width))
-            for k, name in enumerate(self.problem.followed)
+            for k, name in enumerate(self.problem.unknowns)
         }
         for k, name in enumerate(self.problem.fixed):
             values[variable(name)] = self._load(self._at("%fixed", k * self.width))
@@ -473,7 +475,7 @@ class _Writer:
     def _compute(self, operating: Operating, graph: Graph, base: Value) -> None:
         """The outputs of a graph, each stored as soon as it is known."""
         places: dict[Node, list[int]] = {}
-        for k, name in enumerate(self.problem.followed):
+        for k, name in enumerate(self.problem.unknowns):
             places.setdefault(graph.outputs[name], []).append(k)
         for node in graph.order:
             if node not in operating.values:
