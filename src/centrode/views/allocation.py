@@ -56,7 +56,7 @@ def table(results: Allocation) -> Table:
     grades: tuple[Text, ...] = tuple(Name(f"IT{grade}") if grade else NOTHING for grade in results.grades)
     return Table(
         (
-            Column("path", tuple(map(Name, results.paths)), head=Sentence("number")),
+            Column("path", tuple(map(Name, results.paths)), head=Sentence("dimension or mass")),
             Column("value", results.values, head=Sentence("nominal"), units=units),
             Column("tolerance", exact, head=Sentence("tolerance ±"), units=units),
             Column("rounded", rounded, head=Sentence("rounded ±"), units=units),

@@ -68,7 +68,7 @@ def _sampled(data: xarray.Dataset) -> Iterator[bool]:
 def derivatives_table(data: xarray.Dataset) -> Table:
     """A row for each number; a column for each output, in SI."""
     paths = data["path"].to_numpy().tolist()
-    columns = [Column("path", tuple(map(Name, paths)), head=Sentence("number"))]
+    columns = [Column("path", tuple(map(Name, paths)), head=Sentence("dimension or mass"))]
     for name, slopes in _gradients(data):
         head: Text = Sentence("derivative of {output}, SI", output=Name(name))
         shown = slopes

@@ -38,7 +38,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 DISTRIBUTIONS = {
     "normal": Sentence("normal, limits at three standard deviations"),
-    "uniform": Sentence("uniform"),
+    "uniform": Sentence("uniform between the limits"),
     "triangular": Sentence("triangular"),
 }
 TRUE = Sentence("worst case, true")
@@ -249,10 +249,10 @@ def contributions_table(
     limits = results.limits
     units = tuple(results.units)
     columns = [
-        Column("path", tuple(map(Name, limits.paths)), head=Sentence("number")),
+        Column("path", tuple(map(Name, limits.paths)), head=Sentence("dimension or mass")),
         Column("value", limits.values, head=Sentence("nominal"), units=units),
-        Column("lower", limits.lower, head=Sentence("lower limit"), units=units),
-        Column("upper", limits.upper, head=Sentence("upper limit"), units=units),
+        Column("lower", limits.lower, head=Sentence("lower deviation"), units=units),
+        Column("upper", limits.upper, head=Sentence("upper deviation"), units=units),
     ]
     for output in results.outputs:
         shares = output.statistics.contributions
