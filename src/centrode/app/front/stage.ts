@@ -760,7 +760,7 @@ export class Stage {
   }
 
   // The globe turns until a place lies well in front.
-  private follow3(place: Place): void {
+  private turnTowards(place: Place): void {
     const flat = this.globe.flat(place), off = minus(flat, this.globe.centre);
     if (this.globe.front(place) && size(off) < 0.85 * this.globe.radius) return;
     this.globe.turn(-0.3 * off[0]!, 0.3 * off[1]!);
@@ -783,7 +783,7 @@ export class Stage {
         const step = this.step * (event.shiftKey ? 5 : 1), at = angles(this.cursor ?? this.globe.view[2]).map((value) => Math.round(value / this.step) * this.step);
         const to = this.cursor ? plus(at, way, step) : at;
         this.cursor = fromAngles([to[0]!, Math.min(Math.PI / 2, Math.max(-Math.PI / 2, to[1]!))]);
-        this.follow3(this.cursor);
+        this.turnTowards(this.cursor);
         this.showCursor();
       } else {
         const step = this.step * (event.shiftKey ? 5 : event.altKey ? 0.1 : 1);
