@@ -57,7 +57,9 @@ def squares(loops: int) -> FreeMotion:
 
 def free_motions() -> Iterator[Row]:
     """Times by the clock, best of several."""
-    settings = ct.Simulation(equations="multibody", speed=SPEED, duration=DURATION, tolerance=3e-9, samples=401)
+    settings = ct.Simulation(
+        equations="multibody", speed=SPEED, duration=DURATION, tolerance=3e-9, samples=401
+    )
     # libraries are loaded, kernels are not: nothing is kept on disk here
     ct.simulate(ct.example("double-pendulum"))
     free = four_bar()
