@@ -26,7 +26,7 @@ from centrode.app.sketch import (
 from centrode.app.state_rows import rows_of
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
-from centrode.model.links import Gear
+from centrode.model.gears import Gear
 from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME
 

@@ -42,6 +42,8 @@ DISTRIBUTIONS = {
     "triangular": Sentence("triangular"),
 }
 TRUE = Sentence("worst case, true")
+_ROUNDING = 1e-12
+"""A share below this part of the greatest is the rounding of derivatives."""
 MOST_BARS = 10
 """Bars of one output: the table has all numbers."""
 STATISTICAL = Sentence("three standard deviations")
@@ -271,12 +273,19 @@ def contributions_table(
         columns.append(
             Column(
                 f"contribution to {output.name}",
-                np.asarray(100.0 * shown),
+                shares_above_rounding(100.0 * shown),
                 "%",
                 head=Sentence("contribution to {output}", output=name),
             )
         )
     return Table(tuple(columns), caption)
+
+
+def shares_above_rounding(shares: Array) -> Array:
+    """Shares of one output with zero where a share is the rounding of derivatives: what adds nothing adds 0."""
+    sizes = np.abs(np.asarray(shares, dtype=float))
+    greatest = np.nanmax(sizes, initial=0.0)
+    return np.where(sizes <= _ROUNDING * greatest, 0.0, shares)
 
 
 def _bands_table(results: ToleranceResults, sampled: list[OutputAccuracy]) -> Table:
@@ -339,7 +348,7 @@ def _play_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
         columns.append(
             Column(
                 output.name,
-                np.asarray(shares),
+                shares_above_rounding(shares),
                 output.unit,
                 head=Sentence("adds to {output}", output=Name(output.name)),
             )
