@@ -27,6 +27,7 @@ EXAMPLES = {
     "simulate": "six-bar-press-run-up",
 }
 """What a command is tried on; the others on a press."""
+REQUEST = '[synthesis]\nkind = "strokes"\ntopology = "shaper"\nstroke = "0.4 m"\ntime_ratio = 1.6\n'
 FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "run": ("summary.json", FEW),
     "report": ("report.html", ("--format", "html", "--chapters", "data")),
@@ -41,6 +42,7 @@ FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "balance": ("balance.csv", ("--no-figures", "--samples", "9")),
     "cam": ("summary.json", FEW),
     "gears": ("summary.json", ("--no-figures",)),
+    "synthesise": ("summary.json", ("--no-figures",)),
     "centres": ("centres.csv", ("--at", "1 rad", "--no-figures")),
     "centrodes": ("centrodes.csv", ("--link", "AB", *FEW)),
     "diagrams": ("check.csv", ("--at", "1 rad", "--no-figures")),
@@ -66,7 +68,9 @@ WRITE_NO_FILE = {"check", "app"}
 
 
 def described(command: str) -> str:
-    """The description that a command is tried on."""
+    """The description that a command is tried on, or what it is requested to find."""
+    if command == "synthesise":
+        return REQUEST
     return example_text(EXAMPLES.get(command, "six-bar-press"))
 
 
