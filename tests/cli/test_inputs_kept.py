@@ -28,6 +28,7 @@ EXAMPLES = {
     "simulate": "six-bar-press-run-up",
 }
 """What a command is tried on; the others on a press."""
+REQUEST = '[synthesis]\nkind = "strokes"\ntopology = "shaper"\nstroke = "0.4 m"\ntime_ratio = 1.6\n'
 FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "run": ("summary.json", FEW),
     "report": ("report.html", ("--format", "html", "--chapters", "data")),
@@ -40,9 +41,11 @@ FOLDERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "flywheel": ("summary.json", ("--samples", "9", "--no-figures")),
     "simulate": ("simulation.csv", ("--duration", "0.01", "--no-figures")),
     "balance": ("balance.csv", ("--no-figures", "--samples", "9")),
+    "tolerances": ("outputs.csv", ("--no-figures", "--draws", "10", "--output", "angle.DB")),
     "cam": ("summary.json", FEW),
     "gears": ("summary.json", ("--no-figures",)),
     "trains": ("summary.json", ("--no-figures",)),
+    "synthesise": ("summary.json", ("--no-figures",)),
     "centres": ("centres.csv", ("--at", "1 rad", "--no-figures")),
     "centrodes": ("centrodes.csv", ("--link", "AB", *FEW)),
     "diagrams": ("check.csv", ("--at", "1 rad", "--no-figures")),
@@ -68,7 +71,11 @@ WRITE_NO_FILE = {"check", "app"}
 
 
 def described(command: str) -> str:
-    """The description that a command is tried on."""
+    """The description that a command is tried on, or what it is requested to find."""
+    if command == "synthesise":
+        return REQUEST
+    if command == "tolerances":
+        return example_text("crank-rocker") + '\n[tolerances]\ndefault = "±0.1 mm"\n'
     return example_text(EXAMPLES.get(command, "six-bar-press"))
 
 

@@ -1146,8 +1146,7 @@ CAM_SENSITIVITY = Topic(
     result=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     restore=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     view=Lazily("centrode.views.sensitivity", "cam_sheet"),
-    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
-    subject="cam",
+    subject="mechanisms",
 )
 
 ALLOCATION = Topic(

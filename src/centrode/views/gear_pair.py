@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
 from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
 from centrode.gears.profiles import whole_tooth
 from centrode.gears.racks import rack_positions, rack_tooth
-from centrode.locale import mark
 from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing, OutlineSet
 from centrode.sheets.plots import (
@@ -47,7 +46,7 @@ from centrode.sheets.texts import (
 )
 
 if TYPE_CHECKING:
-    from centrode.gears.pair_faults import FaultKind
+    from centrode.gears.pair_faults import PairFault
     from centrode.gears.pair_geometry import PairGeometry
     from centrode.gears.profiles import ToothProfile
     from centrode.gears.results import GearPairResults
@@ -312,43 +311,43 @@ def _contour_table(results: GearPairResults) -> Table:
 
 
 _ADVICE = Sentence("choose other shifts: those of least sliding satisfy all bounds where that is possible")
-FAULTS: Mapping[FaultKind, tuple[str, Sentence]] = {
-    "tip inside base": (
-        mark("{wheel}: its tips lie inside the base circle, where there is no involute"),
-        Sentence("raise its shift or its number of teeth"),
-    ),
-    "no clearance": (mark("{wheel}: its tips reach the root of the other one"), _ADVICE),
-    "contact ratio": (
-        mark("the contact ratio {ratio} is below one"),
-        Sentence("reduce the sum of the shifts, or raise the numbers of teeth"),
-    ),
-    "pointed": (mark("{wheel}: the teeth are pointed below their tip"), Sentence("reduce its shift")),
-    "fillet": (mark("{wheel}: the tips of the other one run into its fillets"), _ADVICE),
-    "tips": (
-        mark("the tips of both wheels run into each other as they leave mesh"),
-        Sentence("enlarge the difference of the numbers of teeth, or the shifts"),
-    ),
-    "contact after undercut": (
-        mark("undercut leaves a contact ratio of {left}, which is below one"),
-        Sentence("raise the shift of the undercut wheel"),
-    ),
-}
-"""What is said of each fault, and what helps; the holes are the wheel and both contact ratios."""
 
 
 def _failure(results: GearPairResults) -> Failure | None:
-    """Why the pair cannot work: its first fault."""
+    """Why the pair cannot work, its first fault, and what helps."""
+    fault = next(iter(results.faults), None)
+    return None if fault is None else Failure(*_words_of_fault(results, fault))
+
+
+def _words_of_fault(results: GearPairResults, fault: PairFault) -> tuple[Sentence, Sentence]:
+    """What is wrong, and the repair."""
     pair = results.geometry
-    for fault in results.faults:
-        message, repair = FAULTS[fault.kind]
-        parts: dict[str, Text] = {
-            "wheel": (PINION, _second(pair))[fault.wheel or 0],
-            "ratio": Number(pair.contact_ratio, digits=".4g"),
-            "left": Number(results.true_contact_ratio, digits=".4g"),
-        }
-        holes = {name: part for name, part in parts.items() if f"{{{name}}}" in message}
-        return Failure(Sentence(message, **holes), repair)
-    return None
+    wheel = (PINION, _second(pair))[fault.wheel or 0]
+    match fault.kind:
+        case "tip inside base":
+            wrong = Sentence(
+                "{wheel}: its tips lie inside the base circle, where there is no involute", wheel=wheel
+            )
+            return wrong, Sentence("raise its shift or its number of teeth")
+        case "no clearance":
+            return Sentence("{wheel}: its tips reach the root of the other one", wheel=wheel), _ADVICE
+        case "contact ratio":
+            ratio = Number(pair.contact_ratio, digits=".4g")
+            wrong = Sentence("the contact ratio {ratio} is below one", ratio=ratio)
+            return wrong, Sentence("reduce the sum of the shifts, or raise the numbers of teeth")
+        case "pointed":
+            wrong = Sentence("{wheel}: the teeth are pointed below their tip", wheel=wheel)
+            return wrong, Sentence("reduce its shift")
+        case "fillet":
+            return Sentence("{wheel}: the tips of the other one run into its fillets", wheel=wheel), _ADVICE
+        case "tips":
+            wrong = Sentence("the tips of both wheels run into each other as they leave mesh")
+            return wrong, Sentence("enlarge the difference of the numbers of teeth, or the shifts")
+        case "contact after undercut":
+            left = Number(results.true_contact_ratio, digits=".4g")
+            wrong = Sentence("undercut leaves a contact ratio of {left}, which is below one", left=left)
+            return wrong, Sentence("raise the shift of the undercut wheel")
+    assert_never(fault.kind)
 
 
 def _notes(results: GearPairResults) -> Iterator[Text]:
