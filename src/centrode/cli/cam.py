@@ -27,7 +27,10 @@ if TYPE_CHECKING:
     from centrode.model.cam_files import AnyCam
     from centrode.sheets.sheet import Sheet
 
-TOPICS_OF_CAMS = tuple(topic for topic in TOPICS if topic.subject == "cam")
+TOPICS_OF_CAMS = tuple(
+    topic for topic in TOPICS if topic.subject == "cam" and (topic.title or topic.flag or topic.command)
+)
+"""Those of cams that more than Python has."""
 
 cam_argument = click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")

@@ -1146,7 +1146,8 @@ CAM_SENSITIVITY = Topic(
     result=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     restore=Lazily("centrode.tolerances.sensitivity", "CamSensitivityResults"),
     view=Lazily("centrode.views.sensitivity", "cam_sheet"),
-    subject="mechanisms",
+    concerns=Lazily("centrode.cams.followers.base_circle", "has_profile"),
+    subject="cam",
 )
 
 ALLOCATION = Topic(
