@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.description import Description
 from centrode.model.loads import (
     AnyLoad,
     BearingFriction,
@@ -25,9 +26,6 @@ from centrode.model.loads import (
     numbered_names,
 )
 from centrode.model.reading import nearest, value_text
-
-if TYPE_CHECKING:
-    from centrode.model.mechanism import Mechanism
 
 ROOMS = ("loads", "machine", "simulation", "gravity")
 """First words of these paths."""
@@ -98,7 +96,7 @@ class PlaceOfNumber(NamedTuple):
     kind: str
 
 
-def place_of_number(mechanism: Mechanism, tables: dict[str, Any], path: str) -> PlaceOfNumber:
+def place_of_number(mechanism: Description, tables: dict[str, Any], path: str) -> PlaceOfNumber:
     """Where the number of a path stands in the tables of a description; raises InputError where there is none."""
     room, _dot, rest = path.partition(".")
     if tables.get(room) is None and room != "simulation":
@@ -120,7 +118,7 @@ def with_number(place: PlaceOfNumber, value: float | str) -> float | int | str:
     return value
 
 
-def kind_of_place(mechanism: Mechanism, place: PlaceOfNumber, path: str) -> str:
+def kind_of_place(mechanism: Description, place: PlaceOfNumber, path: str) -> str:
     """Kind of quantity ("force", "time", ...) of what stands at a place."""
     if path.startswith("simulation."):
         drive = mechanism.motion_parameter.drives[0]
@@ -133,7 +131,7 @@ def kind_of_place(mechanism: Mechanism, place: PlaceOfNumber, path: str) -> str:
     return "ratio" if place.kind == COUNT else place.kind
 
 
-def _of_load(mechanism: Mechanism, tables: list[dict[str, Any]], rest: str, path: str) -> PlaceOfNumber:
+def _of_load(mechanism: Description, tables: list[dict[str, Any]], rest: str, path: str) -> PlaceOfNumber:
     names = numbered_names([load.label for load in mechanism.loads])
     for name in sorted(names, key=len, reverse=True):
         if not rest.startswith(f"{name}."):
@@ -160,7 +158,9 @@ def _keys_of(load: AnyLoad) -> list[str]:
     return ["vector.x", "vector.y"] if isinstance(load, PointForce) else list(KINDS_OF_LOADS[type(load)])
 
 
-def _of_part(mechanism: Mechanism, tables: dict[str, Any], room: str, rest: str, path: str) -> PlaceOfNumber:
+def _of_part(
+    mechanism: Description, tables: dict[str, Any], room: str, rest: str, path: str
+) -> PlaceOfNumber:
     """A number of the machine or of the simulation, of one of its shafts, of its flywheel or of its motor."""
     words = rest.split(".")
     if room == "machine" and words[0] == "shafts":
