@@ -15,7 +15,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.export.motion_code import MotionProgram
+from centrode.export.code_files import source_text
+from centrode.export.motion_program import MotionProgram
 from centrode.numerics.source_languages import LANGUAGES
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -49,7 +50,7 @@ class Answers:
 def answers_of(program: MotionProgram, language: str, given: Places, folder: Path) -> Answers:
     """Run the source file of a language in a folder."""
     path = folder / f"{program.name}{LANGUAGES[language].suffix}"
-    path.write_text(program.text(LANGUAGES[language]), encoding="utf-8")
+    path.write_text(source_text(program, LANGUAGES[language]), encoding="utf-8")
     shape = len(given.dimensions), len(given.places)
     numbers = _RUNNERS[language](program, path, given)
     found = np.asarray(numbers, dtype=np.float64).reshape(*shape, 1 + len(program.results))

@@ -17,7 +17,8 @@ from tools.source_programs import PROGRAMS, Places, answers_of
 import centrode as ct
 from centrode.errors import InputError, NotComputedYet
 from centrode.export.code_files import STATUSES
-from centrode.export.motion_code import motion_code, program_name, traced_program
+from centrode.export.motion_code import motion_code
+from centrode.export.motion_program import program_name, traced_program
 from centrode.model.files import parse_mechanism
 from centrode.numerics.rule_translation import translate_rules
 from centrode.numerics.source_languages import LANGUAGES

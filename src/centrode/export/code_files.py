@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
+from centrode.export import motion_rules
+from centrode.export.motion_program import MotionProgram
+from centrode.numerics.rule_translation import called_first, translate_rules
 from centrode.numerics.source_languages import LANGUAGES, Language
 from centrode.version import __version__
-
-if TYPE_CHECKING:
-    from centrode.export.motion_code import MotionProgram
 
 STATUSES = ("ok", "open", "cut off", "singular", "outside")
 """Statuses of a place in the order of their numbers; outside: beyond the range that was printed."""
@@ -19,14 +18,11 @@ WHOLE = ("events", "cells", "possible")
 """Numbers of the record that are written: real ones, and whole ones."""
 
 
-def source_text(
-    program: MotionProgram,
-    language: Language,
-    formulas: Sequence[str],
-    rules: Sequence[str],
-    heads: Sequence[str],
-) -> str:
-    """The whole file; `heads` are those of the rules, for languages that declare functions before they are called."""
+def source_text(program: MotionProgram, language: Language) -> str:
+    """The whole file. Raises Unwritten."""
+    formulas = [line for function in program.functions for line in function.lines(language)]
+    rules = translate_rules(motion_rules, language, program.numbers)
+    heads = called_first(motion_rules) if language.declares else []
     comments = [f"{language.comment} {line}".rstrip() for line in _head(program, language)]
     lines = _WRITERS[language.suffix](program, language, [*formulas, *rules], heads)
     return "\n".join([*comments, "", *lines]).rstrip() + "\n"

@@ -25,7 +25,8 @@ from typing import TypeAlias
 from xml.etree import ElementTree as ET
 
 from centrode.errors import InputError, NotComputedYet
-from centrode.export.motion_code import CodeResult, MotionProgram, traced_program
+from centrode.export.code_files import source_text
+from centrode.export.motion_program import CodeResult, MotionProgram, traced_program
 from centrode.kinematics.preparation import ready
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -89,7 +90,7 @@ class FmuProgram:
     @cached_property
     def _motion(self) -> str:
         try:
-            return self.program.text(LANGUAGES["c"])
+            return source_text(self.program, LANGUAGES["c"])
         except Unwritten as unwritten:
             what = _("the operation {operation} has no words in {language}")
             text = what.format(operation=unwritten.operation, language="C")

@@ -13,7 +13,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.errors import NotComputedYet, Status
-from centrode.export.motion_code import MotionProgram, traced_program
+from centrode.export.motion_program import MotionProgram, traced_program
 from centrode.kinematics.motion import EVENT_KINDS
 from tools.campaigns.campaign import Campaign, Outcome, random_of
 from tools.campaigns.pages.cases import BESIDE, EXACT, ORDERS, SMOOTH, SPREADS, WORDS, conditions_at
