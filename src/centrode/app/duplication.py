@@ -21,7 +21,7 @@ def duplicate(patch: Patch, operation: Operation) -> None:
     """Put copies beside what is chosen."""
     sketch = patch.plane_sketch()
     by = patch.place_of(operation, "by")
-    links, points = _chosen(patch, patch.objects_of(operation))
+    links, points = _links_and_points(patch, patch.objects_of(operation))
     for point in points:
         if point not in sketch.places:
             raise InputError(point, _("its place is not known: correct the description first"))
@@ -33,7 +33,7 @@ def duplicate(patch: Patch, operation: Operation) -> None:
         for point in points
     }
     for point in points:
-        if point in sketch.fixed:
+        if point in sketch.frame_points:
             set_ground(patch, new[point], True)
     for link in links:
         _copy_link(patch, sketch, link, new)
@@ -58,7 +58,7 @@ def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) 
 def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector) -> None:
     """Copies of links with lengths and angles: each part of them hangs on a point of the frame."""
     sketch = patch.sketch
-    anchors = [point for point in points if point in sketch.fixed]
+    anchors = [point for point in points if point in sketch.frame_points]
     # a part that no point of the frame carries gets one: everything else hangs on it by lengths and angles
     anchors += [part[0] for part in _parts(sketch, links, points) if not set(part) & set(anchors)]
     free = patch.free_names()
@@ -85,7 +85,7 @@ def _parts(sketch: Sketch, links: Sequence[str], points: Sequence[str]) -> list[
     return parts
 
 
-def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:
+def _links_and_points(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:
     """Links and points that are chosen; links bring their points."""
     sketch = patch.sketch
     links = [name for name in objects if name in sketch.links]
@@ -99,7 +99,7 @@ def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]
 def mirror(patch: Patch, operation: Operation) -> None:
     """Put what is chosen at its mirror image."""
     sketch = patch.plane_sketch()
-    _links, points = _chosen(patch, patch.objects_of(operation))
+    _links, points = _links_and_points(patch, patch.objects_of(operation))
     known = [sketch.places[one] for one in points if one in sketch.places]
     if len(known) < len(points):
         raise InputError("", _("its place is not known: correct the description first"))

@@ -74,12 +74,12 @@ def exported_file(document: Document, topic: object, kind: object, options: obje
     stem = file_stem(document)
     if isinstance(topic, str) and topic in EXPORTS:
         if kind not in EXPORTS[topic][1]:
-            raise _unknown(kind, EXPORTS[topic][1])
+            raise _unknown_format(kind, EXPORTS[topic][1])
         table: Mapping[Any, Any] = options if isinstance(options, Mapping) else {}
         return _of_whole(document, topic, str(kind), table, stem)
     chosen = topic_named(topic)
     if kind not in ("csv", "xlsx"):
-        raise _unknown(kind, ("csv", "xlsx"))
+        raise _unknown_format(kind, ("csv", "xlsx"))
     sheet, description = topic_sheet(document, chosen, options, None)
     with tempfile.TemporaryDirectory(prefix="centrode-") as folder:
         spelling = TableSpelling(xlsx=kind == "xlsx", comma=False)
@@ -106,7 +106,7 @@ def _archive(files: Mapping[str, bytes]) -> bytes:
     return stream.getvalue()
 
 
-def _unknown(kind: object, known: tuple[str, ...]) -> InputError:
+def _unknown_format(kind: object, known: tuple[str, ...]) -> InputError:
     return InputError(
         "", _("there is no such format"), _("use one of {known}").format(known=", ".join(known))
     )

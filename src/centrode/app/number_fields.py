@@ -72,8 +72,8 @@ def set_number(patch: Patch, operation: Operation) -> None:
 def _stretch(patch: Patch, sketch: Sketch, link: str, length: float) -> None:
     """Another length of a link that cannot move yet: its second point goes, or its first where that one is free."""
     first, second = sketch.links[link][:2]
-    if second in sketch.fixed or (
-        len(sketch.owners(second)) > 1 and len(sketch.owners(first)) < 2 and first not in sketch.fixed
+    if second in sketch.frame_points or (
+        len(sketch.owners(second)) > 1 and len(sketch.owners(first)) < 2 and first not in sketch.frame_points
     ):
         first, second = second, first
     if sketch.on_sphere:
@@ -186,7 +186,7 @@ def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
                 return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
         case "frame":
             name, _dot, axis = rest.removeprefix("points.").rpartition(".")
-            if axis in AXES and name in sketch.fixed:
+            if axis in AXES and name in sketch.frame_points:
                 if sketch.is_short_form and name in sketch.tables["points"]:
                     return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
                 return ("frame", "points", name, AXES[axis]), "length"
