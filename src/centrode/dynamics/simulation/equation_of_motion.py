@@ -746,7 +746,7 @@ class TrajectoryPiece:
 
 
 @dataclass
-class Trajectory:
+class ReducedTrajectory:
     """Pieces one after another, and how it ended.
 
     Attributes

@@ -32,7 +32,7 @@ from centrode.dynamics.simulation.equation_of_motion import (
     Field,
     FieldLeg,
     Occasion,
-    Trajectory,
+    ReducedTrajectory,
     TrajectoryPiece,
     too_far,
     without_value,
@@ -160,7 +160,7 @@ def fixed_steps(
     duration: float,
     steps: int,
     tell: Callable[[float], None] | None = None,
-) -> Trajectory:
+) -> ReducedTrajectory:
     """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
     step = duration / steps
     states = np.empty((STATES, steps + 1))
@@ -221,7 +221,7 @@ def _next_state(slopes: StepSlopes, t: float, y: Series, h: float) -> Series | N
 
 def _trajectory_of_states(
     field: Field, found: States, step: float, ended: Ending, evaluations: int
-) -> Trajectory:
+) -> ReducedTrajectory:
     """States (STATES, steps + 1) at even times as a course; between two steps an interpolant of the same order."""
     count = found.shape[1] - 1
     if ended in ("limit", "change point") and count == 0:
@@ -243,10 +243,10 @@ def _trajectory_of_states(
         last = float(found[VALUE, -1])
         occasions = [Occasion(ended, count * step, last if ended == "limit" else field.tracks.end(last))]
     piece = TrajectoryPiece(0.0, count * step, Interpolant(found, step, slopes), 1.0)
-    return Trajectory([piece], occasions, ended, evaluations, "runge-kutta-4")
+    return ReducedTrajectory([piece], occasions, ended, evaluations, "runge-kutta-4")
 
 
-def even_times(course: Trajectory, step: float, samples: int) -> States:
+def even_times(course: ReducedTrajectory, step: float, samples: int) -> States:
     """Times of steps, as evenly spaced as may be."""
     count = round(course.last / step)
     return np.unique(np.rint(np.linspace(0, count, samples))) * step
