@@ -165,9 +165,7 @@ class StepSlopes:
             side.acting, zip(*[iter(moments[len(SORTS) :])] * 3, strict=True), strict=True
         ):
             sort, law = self.laws[j]
-            loads[sort] = (
-                loads[sort] + law(Situation(t, q, x, speed * rate, sense, EXPRESSIONS)) * along
-            )
+            loads[sort] = loads[sort] + law(Situation(t, q, x, speed * rate, sense, EXPRESSIONS)) * along
         driving = self.field.driving.over(EXPRESSIONS, t, q, rate)
         stored, friction, other = loads
         acceleration = (stored + friction + other + driving - 0.5 * slope * rate * rate) / inertia
