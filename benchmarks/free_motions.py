@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 import math
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 
@@ -55,6 +57,34 @@ def squares(loops: int) -> FreeMotion:
         link.pop("length")  # type: ignore[attr-defined]
     frame = {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}}
     return free_motion_of(ct.Mechanism(gravity=[0.0, -9.81], frame=frame, links=links))
+
+
+FRESH = """
+import sys, time
+begun = time.perf_counter()
+import xarray
+import centrode as ct
+mechanism = ct.example("double-pendulum")
+loaded = time.perf_counter()
+if sys.argv[1:]:
+    sys.modules["dask"] = None
+ct.simulate(mechanism)
+simulated = time.perf_counter()
+ct.simulate(mechanism)
+print(loaded - begun, simulated - loaded, time.perf_counter() - simulated)
+"""
+
+
+def _fresh_process(*words: str) -> tuple[float, float, float]:
+    """Times [s] of a new process for xarray and a description, for its first simulation, and for the next."""
+    told = [
+        subprocess.run(
+            [sys.executable, "-c", FRESH, *words], capture_output=True, encoding="utf-8", check=True
+        )
+        for _round in range(3)
+    ]
+    loaded, first, again = zip(*(map(float, one.stdout.split()) for one in told), strict=True)
+    return min(loaded), min(first), min(again)
 
 
 def free_motions() -> Iterator[Row]:
@@ -110,6 +140,17 @@ def free_motions() -> Iterator[Row]:
             Promise("energy error over MuJoCo's", error / theirs, at_most=1.0),
         ],
     )
+    # what a process loads for it: modules of the package, llvmlite, and dask, which xarray imports where it is there
+    for name, words in (("without dask", ("without dask",)), ("with dask", ())):
+        loaded, simulated, again = _fresh_process(*words)
+        yield Row(
+            f"double pendulum in a new process, {name}",
+            {
+                "xarray and description [ms]": 1e3 * loaded,
+                "first simulation [ms]": 1e3 * simulated,
+                "next [ms]": 1e3 * again,
+            },
+        )
     random = np.random.default_rng(1)
     lengths = {
         f"links.{link}.length": length * (1.0 + 0.01 * random.standard_normal(LANES).clip(-2.0, 2.0))

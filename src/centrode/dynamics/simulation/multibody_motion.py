@@ -17,7 +17,7 @@ from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.loads import EnergyClass
-from centrode.dynamics.simulation.equation_of_motion import Driving
+from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
 from centrode.errors import STATUSES_OF_MOTION, InputError, Status

@@ -15,6 +15,7 @@ import xarray as xr
 
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer
+from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.equation_of_motion import (
     CREEP,
     NEAR_LIMIT,
@@ -26,7 +27,6 @@ from centrode.dynamics.simulation.equation_of_motion import (
     STORED,
     VALUE,
     DriveForces,
-    Driving,
     Field,
     PanelTracks,
     ReducedFunctions,
