@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from importlib import import_module
 from math import inf, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
@@ -55,6 +55,9 @@ from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+# explicit steps need no SciPy, which takes longer to load than most motions take
+_integrate = partial(import_module, "scipy.integrate")
 
 ROWS, MOST_ROWS = 1024, 65536
 """Steps in one call of the integrator: few at first, as room is made for all of them."""
@@ -277,7 +280,9 @@ class MotionIntegration:
         def rates(t: float, y: Array) -> Array:
             return np.array(followed.rates([t, *parameters, *whole(y)]))[own]
 
-        solver = Radau(rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance)
+        solver = _integrate().Radau(
+            rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance
+        )
         rows = [np.concatenate([[0.0], carried])]
         pieces = []
         ended, cause = DURATION, None
@@ -294,7 +299,7 @@ class MotionIntegration:
             if progress is not None:
                 progress(float(solver.t))
         reached = np.array(rows).T
-        followed_between = OdeSolution(reached[0], pieces)
+        followed_between = _integrate().OdeSolution(reached[0], pieces)
 
         def between(times: Array) -> Array:
             found = np.zeros((len(carried), len(times)))

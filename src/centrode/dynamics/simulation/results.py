@@ -7,8 +7,8 @@ from math import tau
 from typing import TYPE_CHECKING, Any
 
 from centrode.dynamics.masses import has_masses_or_loads
-from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, equations_for
-from centrode.dynamics.simulation.simulate import Tell, simulate
+from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, Tell, equations_for
+from centrode.dynamics.simulation.simulate import simulate
 from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.locale import _
