@@ -81,8 +81,8 @@ def margins_of(pair: PairGeometry) -> dict[str, float]:
     ratio = pair.contact_ratio
     found = {"mesh": mesh, "contact_ratio_1": ratio - 1, "contact_ratio_1.2": ratio - LEAST_CONTACT_RATIO}
     for number, wheel in ((1, first), (2, second)):
-        found[f"undercut_{number}"] = wheel.shift - wheel.least_shift if wheel.generated else 1.0
-        gap = math.tan(wheel.active_pressure) - math.tan(wheel.flank_pressure) if wheel.generated else 1.0
+        found[f"undercut_{number}"] = wheel.shift - wheel.least_shift if wheel.is_generated else 1.0
+        gap = math.tan(wheel.active_pressure) - math.tan(wheel.flank_pressure) if wheel.is_generated else 1.0
         found[f"interference_{number}"] = gap
         thickness = wheel.tip_thickness / module
         found[f"pointed_{number}"] = thickness
