@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, overload
 
@@ -62,7 +62,7 @@ def example(name: str) -> Mechanism | Cam | PlateCam | GearPair | GearTrain:
     'Crank-rocker four-bar linkage'
     """
     kind = next((kind for kind in FOLDERS if name in example_names(kind)), MECHANISMS.kind)
-    return _FILES[kind].example(name)
+    return _FILES[kind].example(name)  # type: ignore[no-any-return]
 
 
 def load(file_or_example: str | Path) -> Mechanism:
@@ -112,14 +112,14 @@ def _load(files: DescriptionFiles[Described], file_or_example: str | Path) -> De
     return files.read(path) if path is not None else files.example(str(file_or_example))
 
 
-def _load_kinds(kinds: Collection[str], file_or_example: str | Path) -> DescriptionPart:
+def _load_kinds(kinds: tuple[str, ...], file_or_example: str | Path) -> DescriptionPart:
     """What a file describes, or the built-in one of that name, of one of several kinds, the first if it says none."""
     path = _file(file_or_example)
     name = path.name if path else f"{file_or_example}.toml"
     text = read_file(path) if path else example_text(str(file_or_example))
     kind = description_kind(toml_tables(text, name))
-    files = _FILES[kind if kind in kinds else next(iter(kinds))]
-    return files.parse(text, name, path.parent if path else None)
+    known = kind if kind is not None and kind in kinds else kinds[0]
+    return _FILES[known].parse(text, name, path.parent if path else None)  # type: ignore[no-any-return]
 
 
 def mechanism_of(source: MechanismSource) -> Mechanism:
