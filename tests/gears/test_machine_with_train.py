@@ -10,7 +10,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.gear_trains import parse_gear_train
+from centrode.model.gear_trains import GEAR_TRAINS
 
 TRAIN = """kind = "gear train"
 scheme = "single planets"
@@ -24,7 +24,7 @@ tolerance = 0.001
 
 @pytest.fixture(scope="module")
 def results() -> Any:
-    return ct.gear_train(parse_gear_train(TRAIN))
+    return ct.gear_train(GEAR_TRAINS.parse(TRAIN))
 
 
 def test_speeds_inertia_and_reactions_close(results: Any) -> None:
@@ -69,7 +69,7 @@ def test_reactions_of_the_press_are_those_without_the_train(results: Any) -> Non
 
 def test_machines_that_no_train_can_drive(results: Any) -> None:
     bare = ct.gear_train(
-        parse_gear_train('kind = "gear train"\nscheme = "one pair"\nratio = 3\nmodule = 0.002\n')
+        GEAR_TRAINS.parse('kind = "gear train"\nscheme = "one pair"\nratio = 3\nmodule = 0.002\n')
     )
     with pytest.raises(InputError, match="no pair behind"):
         ct.train_mechanism(bare, "six-bar-press")

@@ -12,7 +12,7 @@ import pytest
 import centrode as ct
 from centrode.synthesis import four_bars, path_synthesis, start_candidates
 from centrode.synthesis.cognates import cognates
-from centrode.synthesis.requests import parse_synthesis
+from centrode.synthesis.requests import SYNTHESES
 from coupler_continuation import walk
 
 PATHS = Path(__file__).parent.parent / "reference" / "paths"
@@ -20,7 +20,7 @@ PATHS = Path(__file__).parent.parent / "reference" / "paths"
 
 def request(lines: str, constraints: str = "") -> ct.SynthesisTask:
     text = f'[synthesis]\ntopology = "crank-rocker"\nkind = "path"\n{lines}\n[synthesis.constraints]\n{constraints}'
-    return parse_synthesis(text, "path.toml", PATHS)
+    return SYNTHESES.parse(text, "path.toml", PATHS)
 
 
 def rows(name: str) -> np.ndarray:
