@@ -419,3 +419,14 @@ def test_where_no_smooth_motion_leads_through_it_stops_by_name() -> None:
     free, course = moved(parts, 1.0, TIGHT, links_AB=6.0)
     assert course.ended == "change point" and "change point" in str(course.cause)
     assert course.time[-1] < 0.75 and free.mobility == 1
+
+
+def test_in_an_unstable_equilibrium_it_goes_to_its_end() -> None:
+    """Upright but for rounding: speeds and forces say nothing of how fast the motion will be."""
+    parts = parallelogram(2)
+    for name in ("crank0", "crank1"):
+        parts["links"][name]["angle"] = math.pi / 2
+    free, course = moved(parts, 10.0, 1e-11)
+    assert course.ended == "duration" and free.mobility == 1
+    assert course.steps < 2000
+    assert np.max(np.abs(course.energy_residual)) <= 1e-8 * 9.81 * 3.0
