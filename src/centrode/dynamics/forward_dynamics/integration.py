@@ -227,11 +227,7 @@ class MotionIntegration:
                 continue
             away = self._farthest(state, rate)
             if away > WILD:
-                ended = BLOW_UP
-                cause = _(
-                    "at {time:.9g} s something had moved {far:.3g} times the greatest length or as fast as that"
-                )
-                cause = cause.format(time=time, far=away)
+                ended, cause = BLOW_UP, self._wild_cause(state, away)
                 break
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or away > WILD
@@ -424,6 +420,22 @@ class MotionIntegration:
         q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
         kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
+
+    def _wild_cause(self, state: Array, away: float) -> str:
+        """What has grown without bound, and the load that gives it most power."""
+        names, tree = self.names, self.equations.tree
+        q, w = (list(state[HEADER:, 0][names.part(kind)]) for kind in (names.coordinates, names.speeds))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, tree.values(ARRAYS, q), w, float(state[0, 0]))
+        sizes = np.abs(w) / units_of(tree, self.equations.numbers)
+        cause = _("at {time:.9g} s {part} had moved {far:.3g} times the greatest length or as fast as that")
+        part = tree.coordinates[int(np.argmax(np.nan_to_num(sizes, nan=np.inf)))].name
+        cause = cause.format(time=float(state[0, 0]), part=part, far=away)
+        powers = [float(power) for power in terms.powers]
+        if not powers or not max(powers) > 0.0:
+            return cause
+        load = self.equations.loads[int(np.argmax(powers))].label
+        return f"{cause}; " + _("the load that gives most power is {load}").format(load=load)
 
     def _fastest(self, state: Array) -> str:
         """Name of the coordinate whose speed changes most, or is the greatest."""
