@@ -13,6 +13,7 @@ import pytest
 import scipy.integrate
 import scipy.special
 import xarray as xr
+from tools.campaigns.free_motions.references import position_of_squares
 
 import centrode as ct
 from free_motions import (
@@ -23,7 +24,6 @@ from free_motions import (
     FOUR_BAR,
     PENDULUM,
     SPHERICAL_FOUR_BAR,
-    position_of_squares,
     squares,
     squeezer,
     table,

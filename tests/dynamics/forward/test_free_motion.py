@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from tools.campaigns.free_motions.references import position_of_squares
 
 import centrode as ct
 from centrode.dynamics.forward_dynamics.batches import integrate_many
@@ -22,7 +23,7 @@ from dynamics.forward.free_descriptions import (
     rod,
     slider_crank,
 )
-from free_motions import position_of_squares, squares
+from free_motions import squares
 
 TIGHT = 1e-12
 

@@ -52,6 +52,7 @@ class DenseEquations:
     force : (coordinates), constant
     repeats : whether equations repeat others
     rank : number of equations that do not; off the constraints those that repeat others are none, as far as it goes
+    potential : (coordinates, lanes) -> (lanes), of springs, over complex numbers too
     """
 
     constraints: Callable[[Array], Array]
@@ -59,6 +60,7 @@ class DenseEquations:
     force: Array
     repeats: bool = True
     rank: int | None = None
+    potential: Callable[[Array], Array] | None = None
 
     @property
     def size(self) -> int:
@@ -69,6 +71,13 @@ class DenseEquations:
         """Jacobian of the constraints."""
         lanes = q[:, None] + 1j * TINY * np.eye(self.size)
         return np.imag(self.constraints(lanes)) / TINY
+
+    def forces(self, q: Array) -> Array:
+        """Forces along the coordinates: weights, and what springs give."""
+        if self.potential is None:
+            return self.force
+        lanes = q[:, None] + 1j * TINY * np.eye(self.size)
+        return np.asarray(self.force - np.imag(self.potential(lanes)) / TINY)
 
     def accelerations(self, q: Array, v: Array) -> Array:
         """Accelerations that the forces and the least forces of the constraints give."""
@@ -82,7 +91,7 @@ class DenseEquations:
         )
         slopes = np.imag(self.constraints(lanes)) / TINY
         rows, bias = slopes[:, : self.size], slopes[:, self.size :] @ WEIGHTS / step
-        free = self.root @ (self.root.T @ self.force)
+        free = self.root @ (self.root.T @ self.forces(q))
         along = rows @ self.root
         right = rows @ free + bias
         if self.repeats:
@@ -223,6 +232,21 @@ class DenseMechanism:
             else:
                 force[3 * k : 3 * k + 2] = body["mass"] * gravity
         return force
+
+    def add_springs(self, springs: Sequence[Any]) -> None:
+        """Springs between two points, straight and with a stiffness and a free length."""
+        if not springs:
+            return
+
+        def potential(q: Array) -> Array:
+            total = np.zeros(q.shape[1], dtype=q.dtype)
+            for spring in springs:
+                apart = self.point(q, spring.points[1]) - self.point(q, spring.points[0])
+                length = np.sqrt(np.sum(apart**2, axis=0))
+                total = total + 0.5 * spring.stiffness * (length - spring.free_length) ** 2
+            return total
+
+        self.equations.potential = potential
 
     # places of everything
 
