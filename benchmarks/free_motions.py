@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-import scipy.integrate
+from tools.campaigns.free_motions.references import chain_of_squares, position_of_squares
 
 import centrode as ct
 from benchmarks.table import Promise, Row
@@ -43,20 +43,6 @@ def four_bar() -> FreeMotion:
         loads=[{"kind": "torque", "link": "AB", "value": MOMENT}],
     )
     return free_motion_of(mechanism)
-
-
-def squares(loops: int) -> FreeMotion:
-    """IFToMM's chain of squares (A02)."""
-    rod = {"mass": 1.0, "shape": "rod", "length": 1.0}
-    links: dict[str, object] = {}
-    for k in range(loops + 1):
-        links[f"A{k}B{k}"] = {**rod, "points": {f"A{k}": [0, 0], f"B{k}": [1, 0]}, "angle": math.pi / 2}
-    for k in range(loops):
-        links[f"B{k}B{k + 1}"] = {**rod, "points": {f"B{k}": [0, 0], f"B{k + 1}": [1, 0]}, "angle": 0.0}
-    for link in links.values():
-        link.pop("length")  # type: ignore[attr-defined]
-    frame = {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}}
-    return free_motion_of(ct.Mechanism(gravity=[0.0, -9.81], frame=frame, links=links))
 
 
 FRESH = """
@@ -168,7 +154,7 @@ def free_motions() -> Iterator[Row]:
             Promise("their energy error [J]", worst, at_most=1e-4),
         ],
     )
-    chain = squares(LOOPS)
+    chain = free_motion_of(chain_of_squares(LOOPS))
     upright = chain.initial({"points.B0": (1.0, 0.0)})
     begun = time.perf_counter()
     chain.integration.explicit_steps(upright, 1.0, 1e-12)
@@ -193,18 +179,8 @@ def _distance_from_closed_form(chain: FreeMotion, upright: InitialState) -> floa
     course = chain.integrate(upright, 20.0, 1e-12, at=instants)
     if course.ended != "duration":
         return math.inf
-    inertia, weight = (LOOPS + 1) / 3 + LOOPS, ((LOOPS + 1) / 2 + LOOPS) * 9.81
-    angle = scipy.integrate.solve_ivp(
-        lambda _t, y: [y[1], weight / inertia * math.sin(y[0])],
-        (0.0, 20.0),
-        [0.0, 1.0],
-        method="DOP853",
-        t_eval=instants,
-        rtol=3e-14,
-        atol=1e-15,
-    ).y[0]
     places = course.places[:, chain.points.index("B0")]
-    return float(np.max(np.hypot(places[:, 0] - np.sin(angle), places[:, 1] - np.cos(angle))))
+    return float(np.max(np.linalg.norm(places - position_of_squares(LOOPS, instants), axis=1)))
 
 
 def _mujoco(coordinates: np.ndarray, speeds: np.ndarray) -> tuple[float, float]:
