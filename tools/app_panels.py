@@ -1,12 +1,12 @@
 """Look at every panel of the workbench: in each language, at three widths, by day and at night.
 
-python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit]
+python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square]
 
-For each panel it writes one sheet a width, with the panel in all languages by day and at night, and prints what does
-not fit: what is wider than the page or its panel, words that are cut, letters that are too small, scrolled boxes inside
-scrolled boxes, panels that stay empty, what the console says, and what of a Russian or Ukrainian panel is in Latin
-letters. With --audit axe-core looks at every panel too, at the two narrower widths. It needs a Chromium and playwright,
-as the tests of pages do.
+For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day or
+at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut, letters
+that are too small, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and what of a
+Russian or Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two narrower
+widths. It needs a Chromium and playwright, as the tests of pages do.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ SCHEMES = ("light", "dark")
 WIDTHS = (400, 1000, 1920)
 AUDITED = WIDTHS[:2]
 HEIGHT = 900
-TALLEST = 3000
+TALLEST = 2400
 """Pixels of a panel that a sheet shows."""
 GAP, HEAD = 16, 22
 TOLERANCES = """
@@ -113,7 +113,7 @@ class Findings:
     wrong: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
     foreign: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     audits: int = 0
-    pictures: dict[tuple[str, int], dict[tuple[str, str], Image.Image]] = field(
+    pictures: dict[tuple[str, int], dict[tuple[str, str], Path]] = field(
         default_factory=lambda: defaultdict(dict)
     )
 
@@ -170,19 +170,27 @@ def picture(window: Any) -> Image.Image:
     return shown.crop((0, 0, shown.width, min(shown.height, TALLEST)))
 
 
-def look(window: Any, name: str, language: str, scheme: str, found: Findings, *, audits: bool) -> None:
+def look(
+    window: Any, name: str, view: tuple[str, str], found: Findings, arguments: argparse.Namespace
+) -> None:
     """A panel at all widths."""
+    (language, scheme), folder = view, arguments.folder
     for wide in WIDTHS:
         window.set_viewport_size({"width": wide, "height": HEIGHT})
         settle(window)
-        view = f"{language} {wide} {scheme}"
-        for said in dict.fromkeys(window.evaluate(FITS)):
-            found.wrong[name, said].append(view)
-        if audits and wide in AUDITED:
+        said = [*dict.fromkeys(window.evaluate(FITS))]
+        if arguments.audit and wide in AUDITED:
             found.audits += 1
-            for said in window.evaluate(AUDIT):
-                found.wrong[name, said].append(view)
-        found.pictures[name, wide][language, scheme] = picture(window)
+            said += window.evaluate(AUDIT)
+        for one in said:
+            found.wrong[name, one].append(f"{language} {wide} {scheme}")
+            print(f"{name}: {one} [{language} {wide} {scheme}]", flush=True)
+        turn = LANGUAGES.index(language) + WIDTHS.index(wide)
+        if arguments.square and SCHEMES.index(scheme) != turn % 2:
+            continue  # each language at each width, by day or at night
+        file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
+        picture(window).save(file)
+        found.pictures[name, wide][language, scheme] = file
     if language != "en":
         text = window.inner_text("#panel")
         found.foreign[name] |= set(FOREIGN.findall(text))
@@ -215,7 +223,7 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
                         continue
                     seen.add(topic)
                     open_panel(window, topic)
-                    look(window, key, language, scheme, found, audits=arguments.audit)
+                    look(window, key, (language, scheme), found, arguments)
                     window.set_viewport_size({"width": WIDTHS[-1], "height": HEIGHT})
                 for message in said:
                     found.wrong[name, message].append(f"{language} {scheme}")
@@ -224,8 +232,8 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
 
 def write_sheets(found: Findings, folder: Path) -> Iterator[Path]:
     """One picture of each panel at each width: languages beside each other, day and night."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for (name, wide), views in found.pictures.items():
+    for (name, wide), files in found.pictures.items():
+        views = {view: Image.open(file) for view, file in files.items()}
         size = (
             sum(one.width + GAP for one in views.values()) + GAP,
             max(one.height for one in views.values()) + HEAD + GAP,
@@ -248,7 +256,9 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--topics", nargs="+", default=[])
     parser.add_argument("--languages", nargs="+", default=LANGUAGES, choices=LANGUAGES)
     parser.add_argument("--audit", action="store_true")
+    parser.add_argument("--square", action="store_true")
     arguments = parser.parse_args(words)
+    (arguments.folder / "views").mkdir(parents=True, exist_ok=True)
     found = Findings()
     program = next(filter(None, map(shutil.which, BROWSERS)))
     with workbench() as address, sync_playwright() as driver:
@@ -256,8 +266,6 @@ def main(words: Sequence[str] | None = None) -> int:
         walk(running, address, found, arguments)
         running.close()
     files = [*write_sheets(found, arguments.folder)]
-    for (name, said), views in sorted(found.wrong.items()):
-        print(f"{name}: {said} [{', '.join(views)}]")
     for name, latin in sorted(found.foreign.items()):
         print(f"{name}: in Latin letters: {', '.join(sorted(latin))}")
     print(

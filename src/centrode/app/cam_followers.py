@@ -21,7 +21,7 @@ DIGITS = 6
 def follower_scene(cam: PlateCam, angles: npt.NDArray[np.float64]) -> dict[str, Any] | None:
     """The follower at angles (n) [rad] of the cam; None where this cannot lead it.
 
-    `places` are centres of the roller, the edge, or the foot of the stem on a flat face, (n, 2) [m]; `faces` the ends of
+    `places` are centres of the roller, the edge, or the foot of a stem on its face, (n, 2) [m]; `faces` the ends of
     the straight parts of a flat-faced follower, (n, 4) or (n, 8) [m]; `sense` is 1 where the cam turns
     counter-clockwise, else -1; `pivot` that of an oscillating follower [m].
     """

@@ -8,6 +8,7 @@ import type { CamScene, Segment } from "./protocol";
 import { edit, place, problems, scene } from "./state";
 import { say } from "./words";
 
+const PRIMES = { lift: "", velocity: "′", acceleration: "″" };
 const QUANTITIES = ["lift", "velocity", "acceleration"] as const;
 
 // The cam turns under its follower; the line above it is the follower's place at that angle.
@@ -94,15 +95,15 @@ export function CamPanel() {
       {course?.missing && <Missing message={course.missing} repair={course.repair} />}
       {course?.angle && QUANTITIES.map((name) => {
         const values = course[name];
-        return values?.length ? <CamChart key={name} title={say(`cam_${name}`)} unit={name === "lift" ? signed(lift.unit) : `${signed(lift.unit)}/rad${name === "acceleration" ? "²" : ""}`} values={values} factor={lift.factor} x={x} /> : null;
+        return values?.length ? <CamChart key={name} title={say(`cam_${name}`)} symbol={(course.unit === "rad" ? "ψ" : "s") + PRIMES[name]} unit={name === "lift" ? signed(lift.unit) : `${signed(lift.unit)}/rad${name === "acceleration" ? "²" : ""}`} values={values} factor={lift.factor} x={x} /> : null;
       })}
     </>
   );
 }
 
-function CamChart({ title, unit, values, factor, x }: { title: string; unit: string; values: (number | null)[]; factor: number; x: { values: number[]; label: string; unit: string } }) {
+function CamChart({ title, symbol, unit, values, factor, x }: { title: string; symbol: string; unit: string; values: (number | null)[]; factor: number; x: { values: number[]; label: string; unit: string } }) {
   const kept = useRef<{ values: (number | null)[]; data: Parameters<typeof ChartView>[0]["data"] } | null>(null);
-  if (kept.current?.values !== values) kept.current = { values, data: { title, unit: signed(unit), x, lines: [{ label: title, values: values.map((value) => (value === null ? NaN : value * factor)) }] } };
+  if (kept.current?.values !== values) kept.current = { values, data: { title, unit: signed(unit), x, lines: [{ label: symbol, values: values.map((value) => (value === null ? NaN : value * factor)) }] } };
   return (
     <figure class="chart">
       <figcaption class="head">{title}</figcaption>
