@@ -99,7 +99,9 @@ def test_loads_by_the_angle_of_the_crank_are_those_of_the_motor(results: Any) ->
     ratio = results.whole_ratio(results.chosen)
     assert np.allclose(second * ratio, first, rtol=1e-9, atol=1e-9 * np.abs(first).max())
     by_table = text.replace(
-        "[[guides]]", '[[loads]]\nkind = "torque"\nlink = "CD"\ntable = [["0 deg", 0], ["355 deg", 3]]\n\n[[guides]]', 1
+        "[[guides]]",
+        '[[loads]]\nkind = "torque"\nlink = "CD"\ntable = [["0 deg", 0], ["355 deg", 3]]\n\n[[guides]]',
+        1,
     )
     with pytest.raises(InputError, match="table over the angle of its crank"):
         ct.train_mechanism(results, ct.parse_mechanism(by_table))

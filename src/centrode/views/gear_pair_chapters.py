@@ -211,7 +211,7 @@ def _wheel(wheel: GearWheel) -> Iterator[Block]:
     pair, index = wheel.pair, str(wheel.number + 1)
     section, module = pair.transverse, pair.module
     height, depth = pair.rack.addendum, pair.rack.addendum + pair.rack.clearance
-    values = {
+    values: dict[str, Leaf] = {
         "m": _hidden(module),
         "mt": _hidden(section.module),
         "z": Number(wheel.teeth),

@@ -179,11 +179,11 @@ def description_of(source: DescriptionSource) -> Mechanism | AnyCam:
 
 def reported_description(source: DescribedSource) -> Described:
     """The description itself, or what `load_description` finds under a name; InputError for anything else."""
-    source = load_description(source) if isinstance(source, str | Path) else source
-    if not isinstance(source, Mechanism | Cam | PlateCam | GearPair | GearTrain):
-        what = _("this function takes a mechanism, a cam, or a pair or train of gears, its file or its name")
-        raise _refusal(what, source)
-    return source
+    described: object = load_description(source) if isinstance(source, str | Path) else source
+    if isinstance(described, Mechanism | Cam | PlateCam | GearPair | GearTrain):
+        return described
+    what = _("this function takes a mechanism, a cam, or a pair or train of gears, its file or its name")
+    raise _refusal(what, described)
 
 
 def files_of(description: Described) -> DescriptionFiles[Any]:
