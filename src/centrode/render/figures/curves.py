@@ -489,4 +489,9 @@ def legend_width(names: Sequence[str], inches: float = PANEL_INCHES, width: floa
     texts = with_events(names)
     if not stands_beside(texts, inches, width):
         return 0.0
-    return legend_columns(len(texts), inches) * (KEY_INCHES + NAME * LETTER * max(map(len, texts)))
+    return legend_columns(len(texts), inches) * column_width(texts)
+
+
+def column_width(names: Sequence[str]) -> float:
+    """Width [inch] of a legend whose names stand below each other."""
+    return KEY_INCHES + NAME * LETTER * max(map(len, names))
