@@ -14,6 +14,7 @@ from tools.campaigns.commands import cases as commands
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
+from tools.campaigns.imports import cases as imports
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -37,5 +38,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        imports.CAMPAIGN,
     )
 }

@@ -170,7 +170,7 @@ class _Reader:
         return least[1] if least[0] <= within else None
 
     def _node(self, place: Place, before: Place | None = None) -> int:
-        """The node at a place, or at whose circle a line from `before` ends on its way to the middle; else a new one."""
+        """The node at a place, or at whose circle a line from `before` ends on the way to the middle; else a new one."""
         found = []
         for k, (at, rim) in enumerate(zip(self.parts.places, self.rims, strict=True)):
             off = max(0.0, math.dist(place, at) - max(0.0, rim))
@@ -322,9 +322,9 @@ class _Reader:
     def _add_bodies(self, stroke: Stroke, blocks: Sequence[Block]) -> None:
         """A closed polygon is one link; an open polyline is hinged where circles stand, or everywhere without any."""
         points = stroke.points
-        nodes = [self._node(place) for place in points[1:-1]]
-        ends = [self._end_node(points[0], points[1], blocks), self._end_node(points[-1], points[-2], blocks)]
-        nodes = [ends[0], *nodes, ends[1]]
+        first = self._end_node(points[0], points[1], blocks)
+        nodes = [first, *(self._node(place) for place in points[1:-1])]
+        nodes.append(self._end_node(points[-1], points[-2], blocks))
         nodes = [k for k, before in zip(nodes, [-1, *nodes], strict=False) if k != before]
         if stroke.closed and len(nodes) > 1 and nodes[0] == nodes[-1]:
             nodes.pop()
@@ -423,9 +423,13 @@ class _Reader:
             return
         guided = {one.node for one in self.parts.guided}
         count = [sum(k in body.nodes for body in self.parts.bodies) for k in range(len(self.parts.places))]
-        for k, links in enumerate(count):
-            if links == 1 and k not in guided and (not self._has_rings or self.rims[k] >= 0.0):
-                frame.nodes.append(k)
+        for body in self.parts.bodies[1:]:
+            hangs_on = any(count[k] > 1 or k in guided for k in body.nodes)
+            for k in body.nodes if hangs_on else ():
+                # without circles a corner of a plate is a point of it, and the end of a bar a hinge
+                is_hinge = self.rims[k] >= 0.0 if self._has_rings else len(body.nodes) == 2
+                if count[k] == 1 and k not in guided and is_hinge:
+                    frame.nodes.append(k)
         if not frame.nodes:
             what = _("nothing tells which points are fixed")
             raise InputError(self.where, what, _("put circles, hatching or lines on a layer named ground"))
@@ -469,7 +473,7 @@ class _Reader:
             self.parts.guided.append(
                 Guided(node, block.direction, FRAME if carrier is None or fixed else carrier)
             )
-        for k, side in enumerate(rails):
+        for k in range(len(rails)):
             if k not in used:
                 self._guide_by_line(k, rails, used)
         left = len(rails) - len(used)
