@@ -170,7 +170,7 @@ class _Reader:
         return least[1] if least[0] <= within else None
 
     def _node(self, place: Place, before: Place | None = None) -> int:
-        """The node at a place, or at whose circle a line from `before` ends on the way to the middle; else a new one."""
+        """The node at a place, or at whose circle a line from `before` ends on its way in; else a new one."""
         found = []
         for k, (at, rim) in enumerate(zip(self.parts.places, self.rims, strict=True)):
             off = max(0.0, math.dist(place, at) - max(0.0, rim))

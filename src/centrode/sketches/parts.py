@@ -18,7 +18,7 @@ FRAME = 0
 
 @dataclass
 class Body:
-    """A rigid part: the nodes that it joins in the order in which they are drawn, its straight sides, name and layer."""
+    """A rigid part: the nodes that it joins in the order in which they are drawn, its sides, name and layer."""
 
     nodes: list[int]
     sides: list[tuple[int, int]]
