@@ -73,7 +73,7 @@ def import_sketch(
     -------
     ImportedSketch
         Links are lines, polylines and polygons; circles are hinges; hatching, or a layer named ground, is the frame;
-        rectangles are sliders. What was guessed and what was left out is told, and stands in the text.
+        rectangles are sliders. What was guessed and what was omitted stands in the text, too.
 
     Raises
     ------

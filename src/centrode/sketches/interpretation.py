@@ -431,7 +431,7 @@ class _Reader:
                 if count[k] == 1 and k not in guided and is_hinge:
                     frame.nodes.append(k)
         if not frame.nodes:
-            what = _("nothing tells which points are fixed")
+            what = _("no point is marked as fixed")
             raise InputError(self.where, what, _("put circles, hatching or lines on a layer named ground"))
         self.sketch.notes.append(
             _(
@@ -468,7 +468,7 @@ class _Reader:
                 self.sketch.leave_out(_("fixed sliders through which no link passes"))
                 continue
             if carrier is None and not fixed:
-                what = _("nothing tells along what a slider slides")
+                what = _("a slider has no guide")
                 raise InputError(self.where, what, _("draw a line on a layer named guide beside it"))
             self.parts.guided.append(
                 Guided(node, block.direction, FRAME if carrier is None or fixed else carrier)

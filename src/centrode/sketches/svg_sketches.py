@@ -157,7 +157,7 @@ class _Numbers:
             text = inner.split()[0] if inner.split() else "0"
         read = _length(text.split()[0] if text.split() else "0")
         if read is None or read[1] not in ("", "px"):
-            what = _("the attribute {name} is no number of the drawing's own units").format(name=name)
+            what = _("the attribute {name} is not a number of the drawing's own units").format(name=name)
             raise InputError(self.where, what, _("save it as plain SVG"))
         return read[0]
 
