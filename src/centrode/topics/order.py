@@ -43,6 +43,7 @@ COMMANDS = (
     "draw",
     "sheets",
     "export",
+    "import",
     "chains",
     "examples",
     "schema",
