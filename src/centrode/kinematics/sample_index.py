@@ -45,6 +45,7 @@ DIMENSIONS = frozenset(
             "mode",
             "freedom",
             "root",
+            "number",
             "band",
             "end",
             "branch_point",

@@ -87,8 +87,9 @@ def equilibrium(
     -------
     Dataset
         Of every `equilibrium`, counted from 1, stable ones first and near ones before those farther from the initial
-        position: positions, drives, potential energy, stability, eigenvalues of the linearised equations by `root`, the interval in which dry friction holds
-        (docs: equilibria). With `vary` the `branch_...` of equilibria and the `critical_...` values.
+        position: positions, drives, potential energy, stability, eigenvalues of the linearised equations by `root`; the
+        intervals in which dry friction holds (docs: equilibria). With `vary` the `branch_...` of equilibria and the
+        `critical_...` values.
 
     Raises
     ------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, tau
@@ -61,6 +61,7 @@ from centrode.model.simulation import MOST_TURNS, Simulation
 
 # the reduced equation needs nothing of the other route
 _multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
+_gradients = functools.partial(importlib.import_module, "centrode.dynamics.sensitivities.motion_gradients")
 _many = functools.partial(importlib.import_module, "centrode.dynamics.simulation.many_mechanisms")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
@@ -357,6 +358,7 @@ def simulate(
     reactions: bool = False,
     vary: Mapping[str, Any] | None = None,
     threads: int | None = None,
+    gradients: Sequence[str] = (),
 ) -> xr.Dataset:
     """The motion of a mechanism under its loads and what drives it, or the states of many that differ in numbers.
 
@@ -381,6 +383,9 @@ def simulate(
         Lengths, masses and loads of many mechanisms of one structure, integrated together by the equations of all
         links. Each starts in the state that is nearest to the described one.
     threads : that share them; as many as there are processors by default
+    gradients : paths of numbers of the description
+        Also the derivatives of the motion by these, by the equations of all links: `coordinate_gradient`,
+        `speed_gradient`, `position_gradient` and `point_speed_gradient` by `number`.
 
     Returns
     -------
@@ -430,7 +435,10 @@ def simulate(
         run: xr.Dataset = _multibody().simulate_multibody(
             mechanism, settings, at, executor, progress, reactions
         )
-        return run
+        return _with_gradients(mechanism, settings, run, gradients, executor) if gradients else run
+    if gradients:
+        what = _("derivatives of a motion come from the equations of all links")
+        raise InputError("gradients", what, _('write equations = "multibody" in [simulation]'))
     if reactions:
         what = _("reactions in a simulation come from the equations of all links")
         raise InputError("reactions", what, _('write equations = "multibody" in [simulation]'))
@@ -447,6 +455,16 @@ def simulate(
     check_size(layout_of(setting.prepared.kinematics), 1, count)
     course = trajectory_of(setting, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
+
+
+def _with_gradients(
+    mechanism: Mechanism, settings: Simulation, run: xr.Dataset, paths: Sequence[str], executor: str
+) -> xr.Dataset:
+    """A motion with its derivatives by numbers of the description."""
+    module = _gradients()
+    found = module.motion_gradients(mechanism, settings, tuple(paths), run["time"].values, executor)
+    variables = module.gradient_variables(run, found)
+    return run.assign(variables).assign_coords(number=np.array(found.paths, dtype=object))
 
 
 def trajectory_of(setting: Setting, progress: Tell | None = None) -> Trajectory:
