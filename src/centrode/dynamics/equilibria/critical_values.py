@@ -19,6 +19,7 @@ import numpy.typing as npt
 from numpy.polynomial import Chebyshev
 from scipy.optimize import brentq
 
+from centrode.dynamics.equilibria.configuration_curve import repeats_with_position
 from centrode.dynamics.equilibria.equilibrium_search import settled
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
@@ -35,7 +36,7 @@ DEGREE = 20
 EXACT = 1e-12
 FIRST, LONGEST, LEAST = 0.01, 0.04, 1e-7
 """Steps along the curve, in rad, greatest lengths, and shares of the range of the number."""
-MOST_STEPS = 3000
+MOST_STEPS = 1500
 CORRECTED = 1e-12
 CORRECTIONS = 12
 SAME = 1e-5
@@ -187,6 +188,14 @@ class _Follower:
     def __init__(self, along: NumberRange) -> None:
         self.along, self.loaded = along, along.loaded
         self.units = np.append(self.loaded.units, along.unit)
+        angles = [one.kind == "angle" for one in self.loaded.coordinates]
+        self.turning = np.append(angles, False) & repeats_with_position(self.loaded)
+
+    def apart(self, point: _Point, whole: Array) -> Array:
+        """Difference of a point and another one in units; whole turns are none where the loads repeat with them."""
+        found = (np.append(point.place, point.value) - whole) / self.units
+        turned = np.remainder(found + np.pi, 2.0 * np.pi) - np.pi
+        return np.asarray(np.where(self.turning, turned, found))
 
     def slopes(self, place: Array, value: float, reactions: Array) -> tuple[Array, Array]:
         """Derivatives of residual and closures by the number."""
@@ -301,7 +310,7 @@ def _steps(follower: _Follower, start: _Point) -> tuple[list[_Point], list[Criti
             break
         critical += _between(follower, here, there, step)
         points.append(there)
-        gone = np.linalg.norm((np.append(there.place, there.value) - began) / follower.units)
+        gone = np.linalg.norm(follower.apart(there, began))
         if len(points) > 5 and gone < 0.75 * step:
             return points, critical, True
         here, step = there, min(LONGEST, 1.4 * step)

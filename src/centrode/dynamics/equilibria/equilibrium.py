@@ -15,7 +15,9 @@ import xarray as xr
 from centrode.dynamics.equilibria.critical_values import (
     BRANCH_POINT,
     FOLD,
+    HOPF,
     KINDS,
+    CriticalValue,
     EquilibriumBranch,
     branches,
     number_range,
@@ -367,15 +369,13 @@ def _branch_variables(
         [np.zeros(0), *(np.full(len(one.values), k + 1.0) for k, one in enumerate(followed))]
     )
     words = [motion.stability for one in followed for motion in one.motions]
-    critical = sorted(
-        {(round(one.value, 12), one.kind): one for branch in followed for one in branch.critical}.values(),
-        key=lambda one: one.value,
-    )
-    crossings = [one for one in critical if one.kind == BRANCH_POINT]
-    critical = [
-        one for one in critical
-        if one.kind != FOLD or not any(_same_place(loaded, one, other) for other in crossings)
-    ]  # fmt: skip
+    critical: list[CriticalValue] = []
+    # where branches cross, one of them turns round: that is no fold
+    for kind in (BRANCH_POINT, FOLD, HOPF):
+        for one in (one for branch in followed for one in branch.critical if one.kind == kind):
+            if not any(_same_place(loaded, one, other) for other in critical):
+                critical.append(one)
+    critical.sort(key=lambda one: one.value)
     at = np.array([one.place for one in critical]).reshape(len(critical), loaded.size)
 
     def of_number(name: str, dimension: str, numbers: Array) -> Any:
@@ -403,7 +403,7 @@ def _branch_variables(
     }
 
 
-def _same_place(loaded: LoadedMechanism, one: Any, other: Any) -> bool:
-    """Whether two critical values are one: where branches cross, one of them turns round."""
+def _same_place(loaded: LoadedMechanism, one: CriticalValue, other: CriticalValue) -> bool:
+    """Whether two critical values are one, found on two branches."""
     near = np.max(np.abs((one.place - other.place) / loaded.units)) < 1e-3
-    return bool(near and abs(one.value - other.value) <= 1e-6 * max(abs(one.value), abs(other.value)))
+    return bool(near and abs(one.value - other.value) <= 1e-5 * max(abs(one.value), abs(other.value)))

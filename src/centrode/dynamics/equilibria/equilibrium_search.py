@@ -134,10 +134,12 @@ def _starts_on(curve: ConfigurationCurve | None) -> Array:
 
 
 def force_scale(loaded: LoadedMechanism, places: Array) -> float:
-    """What generalised forces are compared with [J]: the greatest along any coordinate at some positions."""
+    """What generalised forces are compared with [J]: the greatest at some positions, or a unit away from them."""
     found = loaded.at(places)
-    finite = np.where(np.isfinite(found.force), found.force, 0.0)
-    return float(np.max(np.abs(finite * loaded.units), initial=0.0))
+    force = np.abs(found.force * loaded.units)
+    stiffness = np.abs(found.stiffness * np.outer(loaded.units, loaded.units))
+    sizes = [np.max(one[np.isfinite(one)], initial=0.0) for one in (force, stiffness)]
+    return float(max(sizes))
 
 
 def _check_forces(loaded: LoadedMechanism, places: Array) -> None:
@@ -182,7 +184,7 @@ def settled(loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float]
         found = loaded.at(places[left], numbers=numbers)
         free = loaded.free_directions(found.rows)
         force, stiffness = _reduced(found.residual, found.stiffness, free)
-        along = np.einsum("nij,nj->ni", np.linalg.pinv(stiffness, 1e-12), force)
+        along = np.einsum("nij,nj->ni", np.linalg.pinv(np.nan_to_num(stiffness), 1e-12), force)
         places[left], longest[left] = _moved(loaded, places[left], free, along, numbers)
         left = left[~(longest[left] < SETTLED)]
     settling = np.flatnonzero(longest < NEARLY)

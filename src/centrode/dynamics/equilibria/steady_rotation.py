@@ -28,7 +28,8 @@ STEADY = 1e-9
 """Shares of the forces and of squares of speeds that may be left in a steady motion."""
 LATER = 0.37
 """Turn of the drive [rad, or way in lengths] after which coefficients have to be the same."""
-STARTS = 40
+STARTS = 12
+MOST_TRIALS = 300
 
 
 def steady_rotation(loaded: LoadedMechanism) -> SmallMotions:
@@ -78,9 +79,15 @@ def _steady_states(loaded: LoadedMechanism) -> Iterator[tuple[Array, Array]]:
                 ]
             )  # fmt: skip
 
-        for place in walked_positions(loaded)[: STARTS * 4 : 4]:
+        for place in walked_positions(loaded)[::97][:STARTS]:
             solved = least_squares(
-                left, place / loaded.units, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15
+                left,
+                place / loaded.units,
+                method="lm",
+                max_nfev=MOST_TRIALS,
+                xtol=1e-15,
+                ftol=1e-15,
+                gtol=1e-15,
             )
             if np.max(np.abs(solved.fun)) <= STEADY:
                 yield solved.x * loaded.units, speeds(solved.x * loaded.units)
