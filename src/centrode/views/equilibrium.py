@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import islice
@@ -90,11 +91,15 @@ def place_text(found: xr.Dataset, number: int | None = None) -> Text:
 
 
 def named_values(found: xr.Dataset) -> tuple[list[str], Array, list[str]]:
-    """Names, values and units of what tells a position: the drives, without them the generalised coordinates."""
-    kind, names = (
-        ("drive_value", "drive") if "drive_value" in found else ("generalised_coordinate", "coordinate")
-    )
-    return [str(name) for name in found[names].values], found[kind].values, coordinate_units(found[kind])
+    """Names, values and units of what tells a position: free drives if they are enough, else generalised coordinates."""
+    held = json.loads(found.attrs["hold"]) | json.loads(found.attrs.get("speed", "{}"))
+    free = [k for k, name in enumerate(found["drive"].values) if name not in held]
+    if len(free) < int(found.attrs["mobility"]) or not free:
+        values = found["generalised_coordinate"]
+        return [str(name) for name in found["coordinate"].values], values.values, coordinate_units(values)
+    units = coordinate_units(found["drive_value"])
+    names = [str(found["drive"].values[k]) for k in free]
+    return names, found["drive_value"].values[..., free], [units[k] for k in free]
 
 
 def _facts(results: EquilibriumResults) -> Iterator[Fact]:
