@@ -474,6 +474,13 @@ FORCES = (
     Quantity("occasion_time", "t", "s", mark("time of an occasion")),
     Quantity("occasion_value", "q", "rad", mark("value of the drive at an occasion"), by_drive=-1),
     Quantity("occasion_kind", "", "1", mark("kind of an occasion")),
+    Quantity("occasion_part", "", "1", mark("part that an occasion belongs to")),
+    Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
+    Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
+    Quantity(
+        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
+    ),
+    Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
 )
 
 

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PlainVali
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
+from centrode.model.contacts import MOST_CONTACTS, Clamp, EventCondition, Stop
 from centrode.model.drives import Drive, motion_parameter_of
 from centrode.model.gears import Gear
 from centrode.model.initial_points import with_links_between_points
@@ -85,6 +86,9 @@ class Description(DescriptionPart):
     loads: Annotated[
         tuple[Annotated[AnyLoad, PlainValidator(read_load)], ...], bounded_list(reading.LOADS)
     ] = ()
+    stops: Annotated[tuple[Stop, ...], bounded_list(MOST_CONTACTS)] = ()
+    clamps: Annotated[tuple[Clamp, ...], bounded_list(MOST_CONTACTS)] = ()
+    events: Annotated[tuple[EventCondition, ...], bounded_list(MOST_CONTACTS)] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()

@@ -31,6 +31,7 @@ from centrode.model.cam import (
     Roller,
     Start,
 )
+from centrode.model.contacts import DOINGS, MOST_CONTACTS, Clamp, EventCondition, Stop
 from centrode.model.description import Description
 from centrode.model.drives import Drive
 from centrode.model.explanatory_note import (
@@ -222,6 +223,11 @@ _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
 _HEADING = list_of(quantity_schema("ratio"), 2, 3)
+_MEASURED: Schema = {
+    **dict.fromkeys(("name", "link", "guide", "point", "relative_to"), NAME),
+    "points": _NAMES,
+    "direction": _HEADING,
+}
 _MOMENTS = list_of(quantity_schema("inertia"), 3, 3)
 _INERTIA: Schema = {"anyOf": [*quantity_schema("inertia")["anyOf"], _MOMENTS, list_of(_MOMENTS, 3, 3)]}
 _PLACED: Schema = {
@@ -358,6 +364,8 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "damping": quantity_schema("damping"),
         "viscous": quantity_schema("damping"),
         "quadratic": quantity_schema("quadratic damping"),
+        "static": AMOUNT,
+        "surface_speed": quantity_schema("speed"),
         "coefficient": quantity_schema("ratio"),
         "radius": above_zero("length"),
         "fit": {"enum": list(FITS)},
@@ -369,6 +377,19 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "relative_to": NAME,
         "axis": {"anyOf": [NAME, _HEADING]},
         "while_moving": _HEADING,
+    },
+    Stop: {
+        **_MEASURED,
+        **dict.fromkeys(("least", "most"), AMOUNT),
+        "restitution": {"type": "number", "minimum": 0, "maximum": 1},
+        "stiffness": above_zero("stiffness"),
+        "damping": quantity_schema("damping"),
+    },
+    Clamp: {**_MEASURED, "until": AMOUNT},
+    EventCondition: {
+        **_MEASURED,
+        "when": {**TEXT, "description": "a formula in t [s], x and v that passes zero"},
+        "do": {"enum": list(DOINGS)},
     },
     Machine: {
         "mean_speed": above_zero("angular speed"),
@@ -460,6 +481,9 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "drives": list_of(reference_to(Drive), 0, reading.DRIVES),
         "assembly": reference_to(Assembly),
         "loads": list_of(reference_to(Load), 0, reading.LOADS),
+        "stops": list_of(reference_to(Stop), 0, MOST_CONTACTS),
+        "clamps": list_of(reference_to(Clamp), 0, MOST_CONTACTS),
+        "events": list_of(reference_to(EventCondition), 0, MOST_CONTACTS),
         "machine": reference_to(Machine),
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),

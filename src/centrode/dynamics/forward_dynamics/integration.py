@@ -14,6 +14,7 @@ from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.event_steps import EventWatch
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
@@ -26,12 +27,14 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
     LIMIT,
     LOOKED,
     NEVER,
+    PASSED,
     MotionNames,
     motion_problem,
 )
 from centrode.dynamics.forward_dynamics.motion_steps import (
     BLOW_UP,
     CHANGE_POINT,
+    CONDITION_ENDS,
     CROSSING,
     DURATION,
     NEAR_MISS,
@@ -179,6 +182,10 @@ class MotionIntegration:
         first = min(duration, 0.01 / rate)
         state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
         kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
+        watch = EventWatch(self, take, parameters, rate) if self.equations.has_events else None
+        if watch is not None:
+            state = watch.begin(state)
+            kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
         attempts, steps, room = 0, 0, ROWS
         ended, cause = DURATION, None
         guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
@@ -186,6 +193,8 @@ class MotionIntegration:
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
             rows = np.empty((room, len(kept[0][0])))
+            pause = duration if watch is None else watch.next_release(float(state[0, 0]), duration)
+            parameters[CONTROLS.index(END), 0] = pause
             state = take.run(parameters, state, ATTEMPTS, rows)
             attempts += int(state[2, 0])
             written = int(state[3, 0])
@@ -194,6 +203,20 @@ class MotionIntegration:
             time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
                 progress(time)
+            if watch is not None and state[guard, 0] >= PASSED:
+                # the step that went beyond the event is taken again
+                kept[-1] = rows[: max(written - 1, 0)]
+                before = next(some[-1] for some in reversed(kept) if len(some))
+                row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
+                kept += [row[None], np.concatenate([state[:1, 0], state[HEADER:, 0]])[None]]
+                if ends:
+                    ended = CONDITION_ENDS
+                    break
+                continue
+            if watch is not None and time >= pause and pause < duration:
+                state = watch.release(state, time)
+                kept.append(np.concatenate([state[:1, 0], state[HEADER:, 0]])[None])
+                continue
             if time >= duration:
                 break
             if guard is not None and state[guard, 0] != 0.0:
@@ -238,6 +261,10 @@ class MotionIntegration:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
                 break
             room = min(4 * room, MOST_ROWS)
+        if watch is not None:
+            reached = float(kept[-1][-1, 0]) if len(kept[-1]) else duration
+            told = [one for one in watch.events if one.time <= reached]
+            events = sorted([*events, *told], key=lambda one: one.time)
         return MotionSteps(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
 
     def implicit_steps(

@@ -13,9 +13,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.forward_dynamics.contacts import FRICTION
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
+from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.equation_of_motion import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
@@ -46,8 +49,8 @@ _reactions = functools.partial(importlib.import_module, "centrode.dynamics.simul
 
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
-HAPPENINGS = ("crossing", "near miss", "doubtful")
-"""What may happen on the way: it passes a change point, passes near one, or nothing tells how it goes on."""
+HAPPENINGS = ("crossing", "near miss", "doubtful", *KINDS[2:])
+"""What may happen on the way: change points, what passes near one, where nothing tells how it goes on; and events."""
 
 
 # one mechanism is often simulated again, with other speeds and times: its equations are those that it had
@@ -229,6 +232,7 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory, reactions: 
         **_links_and_points(setting, course),
         **_energies(setting, course),
         **_judgements(setting, course),
+        **_contacts(setting, course),
         **_happenings(course),
     }
     labels = _labels(setting, course)
@@ -252,7 +256,10 @@ def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}
+    contacts = contact_labels(free)
+    touched = {"contact": labels_of(contacts)} if contacts else {}
     return {
+        **touched,
         "time": vocabulary_variable("time", ("sample",), course.time),
         "drive_value": drive_value,
         "point": labels_of(free.points),
@@ -373,6 +380,9 @@ def _links_and_points(setting: MultibodySetting, course: Trajectory) -> dict[str
 def work_sorts(free: FreeMotion) -> dict[str, str]:
     """Source of work -> "stored", "friction", "other" or "drive"."""
     sorts = {load.label: str(load.term.amount.energy_class) for load in free.equations.loads}
+    for contact in free.equations.contacts:
+        rubs = contact.kind == FRICTION
+        sorts[contact.label] = str(EnergyClass.FRICTION if rubs else EnergyClass.OTHER)
     driven = [label for label in sorts if label in {f"drive {name}" for name in free.drives}]
     return sorts | dict.fromkeys([*driven, *(f"drive {kept.name}" for kept in free.equations.kept)], "drive")
 
@@ -414,6 +424,26 @@ def _judgements(setting: MultibodySetting, course: Trajectory) -> dict[str, Vari
     }
 
 
+def contact_labels(free: FreeMotion) -> tuple[str, ...]:
+    """Names of the stops, clamps and frictions of a motion."""
+    return tuple(contact.label for contact in free.equations.contacts)
+
+
+def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Forces and modes of stops, clamps and frictions."""
+    contacts = setting.free.equations.contacts
+    if not contacts:
+        return {}
+    force = vocabulary_variable("contact_force", ("sample", "contact"), course.contact_forces)
+    angular = [isinstance(contact.coordinate, Turn) for contact in contacts]
+    force[2]["units"] = _joined_units(["N m" if turns else "N" for turns in angular])
+    modes = course.contact_modes.astype(np.int8)
+    return {
+        "contact_force": force,
+        "contact_mode": vocabulary_variable("contact_mode", ("sample", "contact"), modes),
+    }
+
+
 def _happenings(course: Trajectory) -> dict[str, Variable]:
     kinds = np.array([HAPPENINGS.index(event.kind) for event in course.events], dtype=np.int8)
     dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
@@ -423,7 +453,22 @@ def _happenings(course: Trajectory) -> dict[str, Variable]:
     return {
         "occasion_time": vocabulary_variable("occasion_time", ("occasion",), times),
         "occasion_kind": (dimensions, values, attributes),
+        **_impacts(course),
     }
+
+
+def _impacts(course: Trajectory) -> dict[str, Variable]:
+    """The parts of events, impulses and lost energies of impacts."""
+    parts = np.array([event.part for event in course.events], dtype=object)
+    if not any(parts):
+        return {}
+    found = {"occasion_part": vocabulary_variable("occasion_part", ("occasion",), parts)}
+    for name, numbers in (
+        ("occasion_impulse", [event.impulse for event in course.events]),
+        ("occasion_loss", [event.lost for event in course.events]),
+    ):
+        found[name] = vocabulary_variable(name, ("occasion",), np.array(numbers, dtype=np.float64))
+    return found
 
 
 def _attributes(

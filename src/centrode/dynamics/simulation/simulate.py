@@ -53,6 +53,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import check_size, solve
 from centrode.locale import _
+from centrode.model.contact_checks import needs_events
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
@@ -184,6 +185,12 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     settings = settings or mechanism.simulation
     if settings is None:
         raise _without_settings()
+    if needs_events(mechanism):
+        raise InputError(
+            "[simulation] equations",
+            _("stops, clamps, events, belts and static friction are computed by the equations of all links"),
+            _('remove equations = "reduced"'),
+        )
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",

@@ -1,0 +1,686 @@
+"""Events of a motion: found by shortened steps of the integrator itself, and what the modes are behind them.
+
+A guard that has passed zero within a step stops the integrator there. The step is taken again from its beginning, with
+ends between which the guard is zero: so an event has the error of a step of order 8, and none of an interpolant. Then
+impulses follow from the masses that the contacts feel, and what sticks, slips, rests or opens from forces within
+bounds. (F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996, chapters 5 and 8.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf, isnan, nan
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from centrode.dynamics.forward_dynamics.bounded_forces import forces_within, impulses_of_impact
+from centrode.dynamics.forward_dynamics.contacts import (
+    AT_LEAST,
+    AT_MOST,
+    CLAMP,
+    COMPLIANT,
+    FRICTION,
+    STOP,
+    Contact,
+    ContactMode,
+)
+from centrode.dynamics.forward_dynamics.motion_problem import (
+    CONDITION,
+    CONTROLS,
+    GUARD,
+    INDEPENDENCE,
+    LIMIT,
+    NEVER,
+    ROUNDING,
+    Guard,
+    guards_of,
+    modes_of,
+)
+from centrode.dynamics.forward_dynamics.motion_steps import (
+    CLOSES,
+    CONDITION_MET,
+    IMPACT,
+    LEAVES,
+    LETS_GO,
+    OPENS,
+    RESTS,
+    SLIPS,
+    STICKS,
+    TOUCHES,
+    Event,
+)
+from centrode.dynamics.load_coordinates import Turn
+from centrode.errors import InputError, MotionError
+from centrode.locale import _
+from centrode.numerics.expressions import EXPRESSIONS, as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.initial_value_problems import END, HEADER, TIME
+from centrode.numerics.integrators import Integrator
+from centrode.numerics.python_functions import Function, python_function
+from centrode.numerics.python_integrations import PythonIntegration
+
+if TYPE_CHECKING:
+    from centrode.dynamics.forward_dynamics.integration import MotionIntegration
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+ROOT = 1e-16
+"""Width [s] down to which the instant of an event is sought, as far as digits of the time go."""
+TOUCHING = 1e-10
+"""A gap below this share of the greatest length is closed, a speed below this share of the usual one is none."""
+ACCUMULATED = 2e-5
+"""Impacts that end within this share of the usual time are taken together."""
+SOON = 1e-3
+"""Share of the usual time after which the side of a condition that begins at zero is looked at."""
+HALVINGS = 60
+AT_THE_LIMIT = 1e-6
+"""What holds is at its limit where its event says so and this share is not missing."""
+MOST_AT_ONCE = 100
+"""Events one after the other at the same instant, beyond which none of them leads on."""
+
+
+@dataclass(frozen=True)
+class ContactForces:
+    """What contacts feel at one state.
+
+    Attributes
+    ----------
+    values, speeds : of their coordinates (contacts)
+    forwards, backwards : forces that they would have if they slipped
+    free : accelerations of the rows (rows) without forces in them
+    mobility : (rows, rows), accelerations of the rows by forces along them
+    shifts : (coordinates, rows), changes of the speeds by impulses along the rows
+    reactions : (kept drives, rows), impulses of kept drives by impulses along the rows
+    rates : of the kept drives
+    conditions : values of the user's events
+    """
+
+    values: Array
+    speeds: Array
+    forwards: Array
+    backwards: Array
+    free: Array
+    mobility: Array
+    shifts: Array
+    reactions: Array
+    rates: Array
+    conditions: Array
+
+
+@dataclass
+class EventWatch:
+    """Finds events of one motion, and sets the modes behind them.
+
+    Attributes
+    ----------
+    integration : what takes the steps
+    take : the integrator
+    parameters : (parameters, 1) of its steps
+    rate : what speeds are compared with [1/s]
+    events : what has happened
+    """
+
+    integration: MotionIntegration
+    take: Integrator
+    parameters: Array
+    rate: float
+    events: list[Event] = field(default_factory=list)
+    _at_once: int = 0
+    _last: float = -inf
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Contacts with their numbers."""
+        return self.integration.equations.contacts
+
+    @cached_property
+    def guards(self) -> tuple[Guard, ...]:
+        """Guards in their order."""
+        return guards_of(self.integration.equations)
+
+    @cached_property
+    def _rows(self) -> dict[int, int]:
+        """Number of a contact -> its row among those of contacts."""
+        rows = self.integration.equations.contact_rows
+        return {number: row - rows[0][0] for row, number in rows}
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Place of what is carried in a state."""
+        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried)}
+
+    @cached_property
+    def _guard_rows(self) -> Array:
+        return np.array([self._places[name] for name in self.integration.names.guards], dtype=np.intp)
+
+    @cached_property
+    def units(self) -> Array:
+        """What coordinates of contacts are compared with: 1 rad, or the greatest length."""
+        scale = float(self.integration.equations.numbers.scale)
+        return np.array([1.0 if isinstance(c.coordinate, Turn) else scale for c in self.contacts])
+
+    @cached_property
+    def _closing(self) -> Function:
+        return PythonIntegration(self.integration.problem).closing
+
+    @cached_property
+    def _numbers(self) -> list[float]:
+        return [float(x) for x in self.parameters[:, 0]]
+
+    @cached_property
+    def _function(self) -> Function:
+        """What contacts feel, as a function of time, parameters and what is carried."""
+        equations, names = self.integration.variables.equations, self.integration.names
+        m, tree, problem = EXPRESSIONS, equations.tree, self.integration.problem
+        modes = [
+            # friction that slips is a force of its own here, what is closed has none
+            ContactMode(mode.active if contact.kind == COMPLIANT else 0.0, 0.0, 0.0)
+            for contact, mode in zip(equations.contacts, modes_of(names, variable) or (), strict=True)
+        ]
+        values = tree.values(m, [variable(name) for name in names.coordinates])
+        speeds = [variable(name) for name in names.speeds]
+        terms = equations.terms(m, values, speeds, variable(TIME), modes)
+        count = equations.equations
+        rows, bias = terms.rows[count:], terms.bias[count:]
+        system = equations.system(m, terms.without_contacts(count))
+        moved, _forces = system.solve(system.force, terms.bias[:count])
+        still = [0.0] * count
+        outputs: dict[str, Any] = {}
+        for k, one in enumerate(terms.measures):
+            outputs |= {f"value {k}": one.value, f"speed {k}": one.speed}
+            outputs |= {f"forwards {k}": one.forwards, f"backwards {k}": one.backwards}
+        for i, row in enumerate(rows):
+            outputs[f"free {i}"] = _product(row, moved) + bias[i]
+            shift, forces = system.solve(row, still)
+            outputs |= {f"mobility {i} {j}": _product(other, shift) for j, other in enumerate(rows)}
+            outputs |= {f"shift {i} {k}": shift.get(k, 0.0) for k in range(equations.size)}
+            first = count - len(equations.kept)
+            outputs |= {f"reaction {i} {k}": forces.get(first + k, 0.0) for k in range(len(equations.kept))}
+        outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
+        outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
+        graph = Graph({name: as_node(x) for name, x in outputs.items()})
+        return python_function(graph, [TIME, *problem.parameters, *problem.carried])
+
+    def _feel(self, time: float, carried: Sequence[float]) -> ContactForces:
+        equations = self.integration.equations
+        found = self._function([time, *self._numbers, *carried])
+        count, rows, size, kept = (
+            len(self.contacts),
+            len(self._rows),
+            equations.size,
+            len(equations.kept),
+        )
+        numbers = np.array(found, dtype=np.float64)
+        own = numbers[: 4 * count].reshape(count, 4)
+        width = 1 + rows + size + kept
+        by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
+        rest = numbers[4 * count + rows * width :]
+        return ContactForces(
+            own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1 : 1 + rows],
+            by_row[:, 1 + rows : 1 + rows + size].T, by_row[:, 1 + rows + size :].T,
+            rest[:kept], rest[kept:],
+        )  # fmt: skip
+
+    # the start
+
+    def begin(self, state: Array) -> Array:
+        """The state at the start with its modes.
+
+        Raises InputError where a stop is violated there, or what is clamped moves.
+        """
+        carried = [float(x) for x in state[HEADER:, 0]]
+        felt = self._feel(float(state[0, 0]), carried)
+        for k, contact in enumerate(self.contacts):
+            value, tolerance = float(felt.values[k]), TOUCHING * self.units[k]
+            for bound, sign in ((contact.least, -1.0), (contact.most, 1.0)):
+                if bound is not None and sign * (bound - value) < -tolerance:
+                    what = _("it is at {value:.9g} at the start, beyond its bound {bound:.9g}")
+                    repair = _("move the start, or correct the bound")
+                    where = f"[[stops]] {contact.label}"
+                    raise InputError(where, what.format(value=value, bound=bound), repair)
+            if contact.kind == CLAMP:
+                if abs(float(felt.speeds[k])) > TOUCHING * self.units[k] * self.rate:
+                    what = _("it moves at the start, and is clamped")
+                    raise InputError(
+                        f"[[clamps]] {contact.label}", what, _("give it no speed, or remove the clamp")
+                    )
+                self._set(state, "active", k, 1.0)
+                self._set(state, "held", k, value)
+        started = self._behind(state, frozenset())
+        if self.integration.names.sides:
+            # what begins at zero is on the side to which it goes
+            row = np.concatenate([started[:1, 0], started[HEADER:, 0]])
+            soon = self._step_to(row, float(row[0]) + SOON / self.rate)
+            later = self._feel(float(soon[0, 0]), soon[HEADER:, 0].tolist()).conditions
+            for k, value in enumerate(felt.conditions):
+                side = float(np.sign(value if abs(value) > ROUNDING else later[k])) or 1.0
+                started[self._places[self.integration.names.sides[k]], 0] = side
+        return started
+
+    def _set(self, state: Array, what: str, number: int, value: float) -> None:
+        names = {"active": "active", "sense": "senses", "held": "held"}
+        state[self._places[getattr(self.integration.names, names[what])[number]], 0] = value
+
+    def _get(self, state: Array, what: str, number: int) -> float:
+        names = {"active": "active", "sense": "senses", "held": "held"}
+        return float(state[self._places[getattr(self.integration.names, names[what])[number]], 0])
+
+    # where it is
+
+    def locate(self, before: Array, state: Array) -> tuple[Array, frozenset[int]]:
+        """The state at the first event between a row before a step and the state behind it, and its guards.
+
+        `before` (1 + carried) has the time first.
+        """
+        begin, end = float(before[0]), float(state[0, 0])
+        passed = np.flatnonzero(state[self._guard_rows, 0] < 0.0)
+        rows = self._guard_rows[passed]
+        known: dict[float, Array] = {end: state}
+
+        def at(time: float) -> float:
+            known[time] = self._step_to(before, time)
+            return float(np.min(known[time][rows, 0]))
+
+        low = begin
+        if float(np.min(before[rows - HEADER + 1])) <= 0.0:
+            # a guard that begins at zero rises first, where it does not pass it at once
+            low = end
+            for _halving in range(HALVINGS):
+                low = begin + 0.5 * (low - begin)
+                if not low > begin:
+                    break
+                if at(low) > 0.0:
+                    break
+            else:
+                low = begin
+        if not low > begin and float(np.min(before[rows - HEADER + 1])) <= 0.0:
+            found = self._step_to(before, begin)
+            return found, frozenset(int(k) for k in passed)
+        final = end
+        if low < end:
+            final = float(
+                brentq(lambda time: at(time) if time > begin else 1.0, low, end, xtol=ROOT, rtol=8.9e-16)
+            )
+        if final not in known:
+            at(final)
+        found = known[final]
+        least = found[rows, 0]
+        due = [int(k) for k, value in zip(passed, least, strict=True) if value <= self._due_below(int(k))]
+        if not due:
+            due = [int(passed[int(np.argmin(least))])]
+        return found, frozenset(due)
+
+    def _due_below(self, number: int) -> float:
+        """What of a guard at an event is still that of rounding."""
+        guard = self.guards[number]
+        if guard.kind == CONDITION:
+            return 0.0
+        unit = float(self.units[guard.number])
+        if guard.kind == FRICTION:
+            return 0.0
+        return 1e-14 * unit
+
+    def _step_to(self, before: Array, time: float) -> Array:
+        """The state at a time, by one step from a row before it."""
+        state = np.concatenate([[before[0], inf, 0.0, 0.0], before[1:]])[:, None]
+        state[self._places[GUARD]] = 0.0
+        if LIMIT in self._places:
+            state[self._places[LIMIT]] = NEVER
+        if not time > before[0]:
+            return state
+        parameters = self.parameters.copy()
+        parameters[CONTROLS.index(END)] = time
+        parameters[CONTROLS.index("tolerance")] = inf
+        parameters[CONTROLS.index("smallest")] = 0.0
+        return self.take.run(parameters, state, 1)
+
+    # what follows
+
+    def pass_event(self, before: Array, state: Array, size: float) -> tuple[Array, Array, bool]:
+        """The row at an event, the state behind it, and whether it ends the motion.
+
+        Parameters
+        ----------
+        before : (1 + carried), the row before the step within which it is
+        state : behind that step
+        size : of the next step
+        """
+        found, due = self.locate(before, state)
+        time = float(found[0, 0])
+        self._at_once = self._at_once + 1 if time <= self._last else 0
+        self._last = time
+        if self._at_once > MOST_AT_ONCE:
+            what = _("at {time:.9g} s events follow one another without end").format(time=time)
+            raise MotionError("[simulation]", what, _("look at the stops and frictions there"))
+        row = np.concatenate([[time], found[HEADER:, 0]])
+        ends = False
+        for number in due:
+            guard = self.guards[number]
+            if guard.kind == CONDITION:
+                ends = self._meet_condition(found, guard.number) or ends
+        behind = self._behind(found, due)
+        behind[1, 0] = size
+        return row, behind, ends
+
+    def _meet_condition(self, state: Array, number: int) -> bool:
+        condition = self.integration.equations.conditions[number]
+        place = self._places[self.integration.names.sides[number]]
+        time = float(state[0, 0])
+        self.events.append(Event(time, CONDITION_MET, nan, condition.label))
+        state[place] = -state[place]
+        for k, contact in enumerate(self.contacts):
+            if contact.kind == CLAMP and contact.until == condition.label:
+                self.let_go(state, k)
+        return condition.ends
+
+    def let_go(self, state: Array, number: int) -> None:
+        """Open a clamp."""
+        if self._get(state, "active", number):
+            self._set(state, "active", number, 0.0)
+            self.events.append(Event(float(state[0, 0]), LETS_GO, nan, self.contacts[number].label))
+
+    def next_release(self, time: float, end: float) -> float:
+        """The next instant at which a clamp lets go, or the end [s]."""
+        times = [c.until for c in self.contacts if c.kind == CLAMP and isinstance(c.until, float)]
+        return min([one for one in times if time < one < end], default=end)
+
+    def release(self, state: Array, time: float) -> Array:
+        """The state behind the instant at which clamps let go."""
+        for k, contact in enumerate(self.contacts):
+            if contact.kind == CLAMP and isinstance(contact.until, float) and contact.until <= time:
+                self.let_go(state, k)
+        return self._behind(state, frozenset())
+
+    def _behind(self, state: Array, due: frozenset[int]) -> Array:
+        """The state with speeds behind impacts, and modes that fit its forces."""
+        state = state.copy()
+        time = float(state[0, 0])
+        guards = [self.guards[k] for k in due]
+        # a stop that has been pressed opens, a contact that has stuck slips
+        let_go = {
+            guard.number
+            for guard in guards
+            if guard.kind != CONDITION and self._get(state, "active", guard.number)
+        }
+        # a flight that is too low to be told from rounding is none
+        grounded = {guard.number for guard in guards if guard.kind == STOP} if self._at_once > 1 else set()
+        felt = self._impact(state, self._feel(time, state[HEADER:, 0].tolist()), grounded)
+        for guard in guards:
+            contact = self.contacts[guard.number] if guard.kind != CONDITION else None
+            if contact is not None and contact.kind == COMPLIANT:
+                pressed = self._get(state, "active", guard.number) != 0.0
+                self._set(state, "active", guard.number, 0.0 if pressed else guard.bound)
+                kind = LEAVES if pressed else TOUCHES
+                self.events.append(Event(time, kind, nan, contact.label))
+                felt = self._feel(time, state[HEADER:, 0].tolist())
+        comes = {guard.number for guard in guards if guard.kind == FRICTION} - let_go
+        self._choose_modes(state, felt, let_go, comes)
+        return self._closed(state)
+
+    def _closed(self, state: Array) -> Array:
+        """The state with everything that follows from its modes."""
+        problem = self.integration.problem
+        carried = [float(x) for x in state[HEADER:, 0]]
+        if INDEPENDENCE in problem.carried:
+            carried[problem.carried.index(INDEPENDENCE)] = 0.0
+        closed = self._closing([float(state[0, 0]), 1.0, *self._numbers, *carried])
+        state[HEADER:, 0] = closed
+        # what is passed already is none: a guard at zero counts from there on
+        rows = self._guard_rows
+        state[rows, 0] = np.maximum(state[rows, 0], 0.0)
+        if state[self._places[GUARD], 0] >= 2.0:
+            state[self._places[GUARD]] -= 2.0
+        return state
+
+    # impacts
+
+    def _touching(self, felt: ContactForces, number: int, bound: float) -> bool:
+        contact = self.contacts[number]
+        level = contact.least if bound < 0.0 else contact.most
+        if level is None:
+            return False
+        return bool(bound * (level - felt.values[number]) <= TOUCHING * self.units[number])
+
+    def _impact(self, state: Array, felt: ContactForces, grounded: set[int]) -> ContactForces:
+        """Impulses of stops that are hit, or to which what is `grounded` returns at once; what contacts feel then."""
+        hits: dict[int, float] = {}
+        holding: dict[int, float] = {}
+        for k in self._rows:
+            contact = self.contacts[k]
+            if contact.kind == CLAMP and self._get(state, "active", k):
+                holding[k] = 0.0
+            if contact.kind != STOP:
+                continue
+            for bound in (AT_LEAST, AT_MOST):
+                speed = -bound * float(felt.speeds[k])
+                slow = TOUCHING * self.units[k] * self.rate
+                if not self._touching(felt, k, bound):
+                    continue
+                if speed < -slow or (k in grounded and speed > slow):
+                    hits[k] = bound
+                elif speed <= slow:
+                    holding[k] = bound
+        if not hits:
+            return felt
+        time, taken = float(state[0, 0]), hits | holding
+        numbers = list(taken)
+        rows = [self._rows[k] for k in numbers]
+        signs = np.array([-taken[k] or 1.0 for k in numbers])
+        is_stop = np.array([self.contacts[k].kind == STOP for k in numbers])
+        matrix = signs[:, None] * felt.mobility[np.ix_(rows, rows)] * signs
+        before = signs * felt.speeds[numbers]
+        before[[k not in hits for k in numbers]] = 0.0
+        restitution = [self.contacts[k].restitution for k in numbers]
+        impulses, after = impulses_of_impact(matrix, before, restitution, is_stop)
+        self._apply(state, felt, numbers, signs * impulses, 0.5 * impulses * (before + after))
+        settled: dict[int, float] = {}
+        behind = self._feel(time, state[HEADER:, 0].tolist())
+        for k in numbers:
+            if k in hits:
+                settled[k] = 0.0 if k in grounded else self._rest_of_impacts(state, behind, k, hits[k])
+        resting = [place for place, k in enumerate(numbers) if not isnan(settled.get(k, nan))]
+        if resting:
+            # the rest of infinitely many impacts at once: their sum is that of one without restitution
+            now, more = signs * behind.speeds[numbers], np.zeros(len(numbers))
+            own = matrix[np.ix_(resting, resting)]
+            more[resting] = np.linalg.lstsq(own, -now[resting], rcond=1e-11)[0]
+            then = now + matrix @ more
+            self._apply(state, behind, numbers, signs * more, 0.5 * more * (now + then))
+            behind = self._feel(time, state[HEADER:, 0].tolist())
+        for place, k in enumerate(numbers):
+            if k not in hits and impulses[place] <= 0.0:
+                continue
+            if self.contacts[k].kind != STOP:
+                continue
+            lost = -0.5 * float(impulses[place] * (before[place] + after[place]))
+            label = self.contacts[k].label
+            self.events.append(Event(time, IMPACT, nan, label, float(impulses[place]), lost))
+            if not isnan(settled.get(k, nan)):
+                self.events.append(Event(time + settled[k], RESTS, nan, label))
+                self._set(state, "active", k, taken[k])
+        return behind
+
+    def _apply(
+        self, state: Array, felt: ContactForces, numbers: Sequence[int], impulses: Array, works: Array
+    ) -> None:
+        """Change speeds by impulses along rows, and note the works of both."""
+        names, rows = self.integration.names, [self._rows[k] for k in numbers]
+        first = self._places[names.speeds[0]]
+        state[first : first + len(names.speeds), 0] += felt.shifts[:, rows] @ impulses
+        works_at = [self._places[name] for name in names.works]
+        count, kept = len(self.contacts), len(felt.rates)
+        for k, work in zip(numbers, works, strict=True):
+            state[works_at[len(works_at) - count + k], 0] += work
+        if kept:
+            given = felt.reactions[:, rows] @ impulses
+            for k in range(kept):
+                state[works_at[len(works_at) - count - kept + k], 0] -= given[k] * felt.rates[k]
+
+    def _rest_of_impacts(self, state: Array, felt: ContactForces, number: int, bound: float) -> float:
+        """Time [s] in which impacts that get ever smaller come to an end; NaN where that is not at once."""
+        speed = -bound * float(felt.speeds[number])
+        restitution = self.contacts[number].restitution
+        if restitution >= 1.0:
+            return nan
+        if speed <= TOUCHING * self.units[number] * self.rate:
+            return 0.0
+        free = -bound * self._acceleration(state, felt, number)
+        if not free < 0.0:
+            return nan
+        whole = -2.0 * speed / free / (1.0 - restitution)
+        return whole if whole * self.rate < ACCUMULATED else nan
+
+    def _acceleration(self, state: Array, felt: ContactForces, number: int) -> float:
+        """Acceleration of a contact's coordinate with the forces of all others."""
+        held = [k for k in self._rows if k != number and self._get(state, "active", k)]
+        right = self._slipping(state, felt)
+        row = self._rows[number]
+        if not held:
+            return float(right[row])
+        rows = [self._rows[k] for k in held]
+        forces = np.linalg.lstsq(felt.mobility[np.ix_(rows, rows)], -right[rows], rcond=1e-11)[0]
+        return float(right[row] + felt.mobility[row, rows] @ forces)
+
+    def _slipping(self, state: Array, felt: ContactForces) -> Array:
+        """Accelerations of the rows with the friction of what slips."""
+        forces = np.zeros(len(self._rows))
+        for k, row in self._rows.items():
+            if self.contacts[k].kind == FRICTION:
+                sense = self._get(state, "sense", k)
+                forces[row] = felt.forwards[k] if sense > 0.0 else felt.backwards[k] if sense < 0.0 else 0.0
+        return felt.free + felt.mobility @ forces
+
+    # modes
+
+    def _choose_modes(self, state: Array, felt: ContactForces, let_go: set[int], comes: set[int]) -> None:
+        """What sticks, slips, is closed or opens, by the forces that would hold it.
+
+        What is in `let_go` is at the limit of its force; what is in `comes` has come to rest on its surface.
+        """
+        held: dict[int, float] = {}
+        before = {k: self._get(state, "active", k) for k in self._rows}
+        for k in self._rows:
+            contact, active = self.contacts[k], before[k]
+            slow = TOUCHING * self.units[k] * self.rate
+            if contact.kind == CLAMP:
+                if active:
+                    held[k] = 0.0
+            elif contact.kind == FRICTION:
+                slip = float(felt.speeds[k]) - contact.drift
+                if abs(slip) <= slow or k in comes:
+                    held[k] = 0.0
+                self._set(state, "sense", k, 0.0 if k in held else float(np.sign(slip)))
+            else:
+                for bound in (AT_LEAST, AT_MOST):
+                    opens = active == bound and k in let_go
+                    rests = abs(float(felt.speeds[k])) <= slow
+                    if rests and not opens and self._touching(felt, k, bound):
+                        held[k] = bound
+        forces = self._held_forces(state, felt, held, let_go)
+        time = float(state[0, 0])
+        for k in self._rows:
+            contact, active = self.contacts[k], before[k]
+            bound = held.get(k, 0.0)
+            if contact.kind == FRICTION:
+                sticks = k in forces
+                self._set(state, "active", k, 1.0 if sticks else 0.0)
+                if sticks and not active:
+                    self._set(state, "held", k, float(felt.values[k]) - contact.drift * time)
+                if sticks and not active and time > 0.0:
+                    self.events.append(Event(time, STICKS, nan, contact.label))
+                if not sticks and active:
+                    self.events.append(Event(time, SLIPS, nan, contact.label))
+            elif contact.kind == STOP:
+                closed = k in forces
+                self._set(state, "active", k, bound if closed else 0.0)
+                if closed:
+                    level = contact.least if bound < 0.0 else contact.most
+                    assert level is not None
+                    self._set(state, "held", k, float(level))
+                if closed and not active and time > 0.0:
+                    self.events.append(Event(time, CLOSES, nan, contact.label))
+                if active and not closed:
+                    self.events.append(Event(time, OPENS, nan, contact.label))
+
+    def _held_forces(
+        self,
+        state: Array,
+        felt: ContactForces,
+        held: dict[int, float],
+        let_go: set[int],
+    ) -> dict[int, float]:
+        """Forces of what goes on to be held, by contacts; what slips gets its sense."""
+        held = dict(held)
+        while True:
+            numbers = list(held)
+            rows = [self._rows[k] for k in numbers]
+            right = self._slipping(state, felt)
+            low, high = np.empty(len(numbers)), np.empty(len(numbers))
+            for place, k in enumerate(numbers):
+                contact = self.contacts[k]
+                if contact.kind == FRICTION:
+                    least, most = sorted((float(felt.forwards[k]), float(felt.backwards[k])))
+                    if contact.static is not None:
+                        least, most = min(-float(contact.static), least), max(float(contact.static), most)
+                    low[place], high[place] = least, most
+                elif contact.kind == CLAMP:
+                    low[place], high[place] = -inf, inf
+                else:
+                    # pushed down from a bound above, up from one below
+                    low[place], high[place] = (-inf, 0.0) if held[k] > 0.0 else (0.0, inf)
+            forces, rest = forces_within(felt.mobility[np.ix_(rows, rows)], right[rows], low, high)
+            slipping = self._first_to_slip(numbers, forces, rest, (low, high), felt, let_go)
+            if slipping is None:
+                break
+            k, sense = slipping
+            self._set(state, "sense", k, sense)
+            del held[k]
+        found = {}
+        for place, k in enumerate(numbers):
+            contact = self.contacts[k]
+            if contact.kind == STOP and forces[place] == 0.0:
+                continue
+            found[k] = float(forces[place])
+        return found
+
+    def _first_to_slip(
+        self,
+        numbers: Sequence[int],
+        forces: Array,
+        rest: Array,
+        bounds: tuple[Array, Array],
+        felt: ContactForces,
+        let_go: set[int],
+    ) -> tuple[int, float] | None:
+        """The first friction that does not hold, and the sense in which it slips; None where all hold."""
+        low, high = bounds
+        for place, k in enumerate(numbers):
+            if self.contacts[k].kind != FRICTION:
+                continue
+            force, least, most = float(forces[place]), float(low[place]), float(high[place])
+            if felt.forwards[k] > felt.backwards[k]:
+                # what drives either way holds nowhere
+                return k, 1.0 if rest[place] >= 0.0 else -1.0
+            near = AT_THE_LIMIT * (most - least) if k in let_go else 0.0
+            if force >= most - near:
+                # pushed forwards as much as can be: it goes backwards
+                return k, -1.0 if most > least or rest[place] <= 0.0 else 1.0
+            if force <= least + near:
+                return k, 1.0
+        return None
+
+
+def _product(one: Any, other: Any) -> Any:
+    total: Any = 0.0
+    for k, x in one.items():
+        if k in other:
+            total = total + x * other[k]
+    return total
+
+
+Progress: TypeAlias = Callable[[float], None]
