@@ -224,9 +224,11 @@ _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
 _HEADING = list_of(quantity_schema("ratio"), 2, 3)
 _MEASURED: Schema = {
-    **dict.fromkeys(("name", "link", "guide", "point", "relative_to"), NAME),
+    **dict.fromkeys(("name", "link", "guide"), NAME),
     "points": _NAMES,
+    "point": NAME,
     "direction": _HEADING,
+    "relative_to": NAME,
 }
 _MOMENTS = list_of(quantity_schema("inertia"), 3, 3)
 _INERTIA: Schema = {"anyOf": [*quantity_schema("inertia")["anyOf"], _MOMENTS, list_of(_MOMENTS, 3, 3)]}

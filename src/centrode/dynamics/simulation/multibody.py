@@ -491,6 +491,7 @@ def _attributes(
         "executor": course.executor,
         "steps": course.steps,
         "driving": settings.law,
+        "conditions": "\n".join(one.label for one in setting.free.equations.conditions),
         "work_sorts": " ".join(work_sorts(setting.free)[name] for name in course.works),
         "worst_residual": float(np.max(variables["residual"][1], initial=0.0)),
         "worst_energy_residual": float(np.nanmax(np.abs(course.energy_residual), initial=0.0)),
