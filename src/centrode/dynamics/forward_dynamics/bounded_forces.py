@@ -79,6 +79,9 @@ def impulses_of_impact(
 
     Where different restitutions would make energy, the least of them holds for all: then none is gained.
     """
+    if len(before) == 1 and is_stop[0]:
+        impulse = np.maximum(-(1.0 + restitution[0]) * before / matrix[0], 0.0)
+        return impulse, before + matrix[0] * impulse
     low = np.where(is_stop, 0.0, -np.inf)
     high = np.full(len(before), np.inf)
     factors = np.where(is_stop, restitution, 0.0)

@@ -29,6 +29,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Contact,
     ContactMode,
 )
+from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
 from centrode.dynamics.forward_dynamics.motion_problem import (
     CONDITION,
     CONTROLS,
@@ -37,7 +38,9 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
     LIMIT,
     NEVER,
     ROUNDING,
+    TOLERANCE,
     Guard,
+    MotionNames,
     guards_of,
     modes_of,
 )
@@ -59,16 +62,22 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.expressions import EXPRESSIONS, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.initial_value_problems import END, HEADER, TIME
+from centrode.numerics.initial_value_problems import (
+    END,
+    HEADER,
+    SMALLEST,
+    TIME,
+    InitialValueProblem,
+)
 from centrode.numerics.integrators import Integrator
 from centrode.numerics.python_functions import Function, python_function
-from centrode.numerics.python_integrations import PythonIntegration
 
 if TYPE_CHECKING:
     from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+_END = CONTROLS.index(END)
 ROOT = 1e-16
 """Width [s] down to which the instant of an event is sought, as far as digits of the time go."""
 TOUCHING = 1e-10
@@ -110,6 +119,41 @@ class ContactForces:
     reactions: Array
     rates: Array
     conditions: Array
+
+
+def contact_function(
+    equations: EquationsOfMotion, names: MotionNames, problem: InitialValueProblem
+) -> Function:
+    """What contacts feel, as a function of time, parameters and what is carried."""
+    m, tree = EXPRESSIONS, equations.tree
+    modes = [
+        # friction that slips is a force of its own here, what is closed has none
+        ContactMode(mode.active if contact.kind == COMPLIANT else 0.0, 0.0, 0.0)
+        for contact, mode in zip(equations.contacts, modes_of(names, variable) or (), strict=True)
+    ]
+    values = tree.values(m, [variable(name) for name in names.coordinates])
+    speeds = [variable(name) for name in names.speeds]
+    terms = equations.terms(m, values, speeds, variable(TIME), modes)
+    count = equations.equations
+    rows, bias = terms.rows[count:], terms.bias[count:]
+    system = equations.system(m, terms.without_contacts(count))
+    moved, _forces = system.solve(system.force, terms.bias[:count])
+    still = [0.0] * count
+    outputs: dict[str, Any] = {}
+    for k, one in enumerate(terms.measures):
+        outputs |= {f"value {k}": one.value, f"speed {k}": one.speed}
+        outputs |= {f"forwards {k}": one.forwards, f"backwards {k}": one.backwards}
+    for i, row in enumerate(rows):
+        outputs[f"free {i}"] = _product(row, moved) + bias[i]
+        shift, forces = system.solve(row, still)
+        outputs |= {f"mobility {i} {j}": _product(other, shift) for j, other in enumerate(rows)}
+        outputs |= {f"shift {i} {k}": shift.get(k, 0.0) for k in range(equations.size)}
+        first = count - len(equations.kept)
+        outputs |= {f"reaction {i} {k}": forces.get(first + k, 0.0) for k in range(len(equations.kept))}
+    outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
+    outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
+    graph = Graph({name: as_node(x) for name, x in outputs.items()})
+    return python_function(graph, [TIME, *problem.parameters, *problem.carried])
 
 
 @dataclass
@@ -165,50 +209,12 @@ class EventWatch:
         return np.array([1.0 if isinstance(c.coordinate, Turn) else scale for c in self.contacts])
 
     @cached_property
-    def _closing(self) -> Function:
-        return PythonIntegration(self.integration.problem).closing
-
-    @cached_property
     def _numbers(self) -> list[float]:
         return [float(x) for x in self.parameters[:, 0]]
 
-    @cached_property
-    def _function(self) -> Function:
-        """What contacts feel, as a function of time, parameters and what is carried."""
-        equations, names = self.integration.variables.equations, self.integration.names
-        m, tree, problem = EXPRESSIONS, equations.tree, self.integration.problem
-        modes = [
-            # friction that slips is a force of its own here, what is closed has none
-            ContactMode(mode.active if contact.kind == COMPLIANT else 0.0, 0.0, 0.0)
-            for contact, mode in zip(equations.contacts, modes_of(names, variable) or (), strict=True)
-        ]
-        values = tree.values(m, [variable(name) for name in names.coordinates])
-        speeds = [variable(name) for name in names.speeds]
-        terms = equations.terms(m, values, speeds, variable(TIME), modes)
-        count = equations.equations
-        rows, bias = terms.rows[count:], terms.bias[count:]
-        system = equations.system(m, terms.without_contacts(count))
-        moved, _forces = system.solve(system.force, terms.bias[:count])
-        still = [0.0] * count
-        outputs: dict[str, Any] = {}
-        for k, one in enumerate(terms.measures):
-            outputs |= {f"value {k}": one.value, f"speed {k}": one.speed}
-            outputs |= {f"forwards {k}": one.forwards, f"backwards {k}": one.backwards}
-        for i, row in enumerate(rows):
-            outputs[f"free {i}"] = _product(row, moved) + bias[i]
-            shift, forces = system.solve(row, still)
-            outputs |= {f"mobility {i} {j}": _product(other, shift) for j, other in enumerate(rows)}
-            outputs |= {f"shift {i} {k}": shift.get(k, 0.0) for k in range(equations.size)}
-            first = count - len(equations.kept)
-            outputs |= {f"reaction {i} {k}": forces.get(first + k, 0.0) for k in range(len(equations.kept))}
-        outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
-        outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
-        graph = Graph({name: as_node(x) for name, x in outputs.items()})
-        return python_function(graph, [TIME, *problem.parameters, *problem.carried])
-
     def _feel(self, time: float, carried: Sequence[float]) -> ContactForces:
         equations = self.integration.equations
-        found = self._function([time, *self._numbers, *carried])
+        found = self.integration.contact_function([time, *self._numbers, *carried])
         count, rows, size, kept = (
             len(self.contacts),
             len(self._rows),
@@ -280,11 +286,18 @@ class EventWatch:
         begin, end = float(before[0]), float(state[0, 0])
         passed = np.flatnonzero(state[self._guard_rows, 0] < 0.0)
         rows = self._guard_rows[passed]
-        known: dict[float, Array] = {end: state}
+        start, found, attempt = self._trial
+        self._put(start, before)
+        ends = self._of_one_step[_END]
+        watched = [int(row) for row in rows]
+        column = found[:, 0]
 
         def at(time: float) -> float:
-            known[time] = self._step_to(before, time)
-            return float(np.min(known[time][rows, 0]))
+            if not time > begin:
+                return 1.0
+            ends[0] = time
+            attempt()
+            return float(min(column.item(row) for row in watched))
 
         low = begin
         if float(np.min(before[rows - HEADER + 1])) <= 0.0:
@@ -292,28 +305,23 @@ class EventWatch:
             low = end
             for _halving in range(HALVINGS):
                 low = begin + 0.5 * (low - begin)
-                if not low > begin:
-                    break
-                if at(low) > 0.0:
+                if not low > begin or at(low) > 0.0:
                     break
             else:
                 low = begin
-        if not low > begin and float(np.min(before[rows - HEADER + 1])) <= 0.0:
-            found = self._step_to(before, begin)
-            return found, frozenset(int(k) for k in passed)
+            if not low > begin:
+                return start.copy(), frozenset(int(k) for k in passed)
         final = end
         if low < end:
-            final = float(
-                brentq(lambda time: at(time) if time > begin else 1.0, low, end, xtol=ROOT, rtol=8.9e-16)
-            )
-        if final not in known:
-            at(final)
-        found = known[final]
+            final = float(brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
+        if not final > begin:
+            return start.copy(), frozenset(int(k) for k in passed)
+        at(final)
         least = found[rows, 0]
         due = [int(k) for k, value in zip(passed, least, strict=True) if value <= self._due_below(int(k))]
         if not due:
             due = [int(passed[int(np.argmin(least))])]
-        return found, frozenset(due)
+        return found.copy(), frozenset(due)
 
     def _due_below(self, number: int) -> float:
         """What of a guard at an event is still that of rounding."""
@@ -325,19 +333,39 @@ class EventWatch:
             return 0.0
         return 1e-14 * unit
 
+    @cached_property
+    def _of_one_step(self) -> Array:
+        """Parameters of a step that is taken whatever its error."""
+        parameters = self.parameters.copy()
+        parameters[CONTROLS.index(TOLERANCE)] = inf
+        parameters[CONTROLS.index(SMALLEST)] = 0.0
+        return parameters
+
+    @cached_property
+    def _trial(self) -> tuple[Array, Array, Callable[[], None]]:
+        """A state, the one behind an attempt from it, and the attempt."""
+        count = HEADER + len(self.integration.problem.carried)
+        start, found = np.zeros((count, 1)), np.zeros((count, 1))
+        return start, found, self.take.attempt_of(self._of_one_step, start, found)
+
+    def _put(self, state: Array, before: Array) -> None:
+        """Put a row (1 + carried) into a state from which one step is to be taken."""
+        state[:HEADER, 0] = before[0], inf, 0.0, 0.0
+        state[HEADER:, 0] = before[1:]
+        state[self._places[GUARD]] = 0.0
+        limit = self._places.get(LIMIT)
+        if limit is not None:
+            state[limit] = NEVER
+
     def _step_to(self, before: Array, time: float) -> Array:
         """The state at a time, by one step from a row before it."""
-        state = np.concatenate([[before[0], inf, 0.0, 0.0], before[1:]])[:, None]
-        state[self._places[GUARD]] = 0.0
-        if LIMIT in self._places:
-            state[self._places[LIMIT]] = NEVER
+        start, found, attempt = self._trial
+        self._put(start, before)
         if not time > before[0]:
-            return state
-        parameters = self.parameters.copy()
-        parameters[CONTROLS.index(END)] = time
-        parameters[CONTROLS.index("tolerance")] = inf
-        parameters[CONTROLS.index("smallest")] = 0.0
-        return self.take.run(parameters, state, 1)
+            return start.copy()
+        self._of_one_step[_END] = time
+        attempt()
+        return found.copy()
 
     # what follows
 
@@ -428,7 +456,7 @@ class EventWatch:
         carried = [float(x) for x in state[HEADER:, 0]]
         if INDEPENDENCE in problem.carried:
             carried[problem.carried.index(INDEPENDENCE)] = 0.0
-        closed = self._closing([float(state[0, 0]), 1.0, *self._numbers, *carried])
+        closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
         state[HEADER:, 0] = closed
         # what is passed already is none: a guard at zero counts from there on
         rows = self._guard_rows
@@ -616,6 +644,8 @@ class EventWatch:
     ) -> dict[int, float]:
         """Forces of what goes on to be held, by contacts; what slips gets its sense."""
         held = dict(held)
+        if not held:
+            return {}
         while True:
             numbers = list(held)
             rows = [self._rows[k] for k in numbers]

@@ -14,7 +14,7 @@ from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.event_steps import EventWatch
+from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
@@ -53,6 +53,7 @@ from centrode.numerics.initial_value_problems import (
     InitialValueProblem,
 )
 from centrode.numerics.integrators import Integrator, integrator_of
+from centrode.numerics.python_functions import Function
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 
@@ -103,10 +104,22 @@ class MotionIntegration:
         """The initial value problem, its numbers being parameters."""
         return motion_problem(self.variables.equations, self.variables.parameters)
 
+    @cached_property
+    def contact_function(self) -> Function:
+        """What contacts feel at one state; see `event_steps.contact_function`."""
+        return contact_function(self.variables.equations, self.names, self.problem)
+
+    @cached_property
+    def closing_function(self) -> Function:
+        """What a state ends with behind an event, on plain numbers."""
+        return PythonIntegration(self.problem).closing
+
     def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
         """The same problem for equations of the same structure with other numbers."""
         other = MotionIntegration(equations)
-        for name in ("variables", "names", "problem", "_half_circles"):
+        shared = ("variables", "names", "problem", "_half_circles")
+        shared += ("contact_function", "closing_function") if self.equations.has_events else ()
+        for name in shared:
             other.__dict__[name] = getattr(self, name)
         return other
 
@@ -186,26 +199,27 @@ class MotionIntegration:
         if watch is not None:
             state = watch.begin(state)
             kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
-        attempts, steps, room = 0, 0, ROWS
+        attempts, steps, room, rows = 0, 0, ROWS, np.empty((0, 0))
         ended, cause = DURATION, None
         guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
         events: list[Event] = []
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
-            rows = np.empty((room, len(kept[0][0])))
+            if len(rows) != room:
+                rows = np.empty((room, len(kept[0][0])))
             pause = duration if watch is None else watch.next_release(float(state[0, 0]), duration)
             parameters[CONTROLS.index(END), 0] = pause
             state = take.run(parameters, state, ATTEMPTS, rows)
             attempts += int(state[2, 0])
             written = int(state[3, 0])
             steps += written
-            kept.append(rows[:written])
+            kept.append(rows[:written].copy())
             time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
                 progress(time)
             if watch is not None and state[guard, 0] >= PASSED:
                 # the step that went beyond the event is taken again
-                kept[-1] = rows[: max(written - 1, 0)]
+                kept[-1] = kept[-1][:-1]
                 before = next(some[-1] for some in reversed(kept) if len(some))
                 row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
                 kept += [row[None], np.concatenate([state[:1, 0], state[HEADER:, 0]])[None]]
