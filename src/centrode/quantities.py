@@ -480,6 +480,7 @@ FORCES = (
     Quantity(
         "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
     ),
+    Quantity("controller_output", "u", "N m", mark("output of a controller")),
     Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
 )
 

@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.contacts import cases as contacts
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
@@ -34,6 +35,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         clusters.CAMPAIGN,
         clearances.CAMPAIGN,
         free_motions.CAMPAIGN,
+        contacts.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,

@@ -38,7 +38,7 @@ DIMENSIONS = frozenset(
         *("sample", "point", "link", "guide", "rolling", "drive", "drive_2", "drive_3", "axis", "event"),
         *("mechanism", "joint", "group", "pair", "constraint", "load", "jump", "order", "coefficient"),
         *("side", "side_point", "side_link", "held", "gear", "gear_body", "friction", "occasion"),
-        *("coordinate", "source", "contact"),
+        *("coordinate", "source", "contact", "controller"),
         *("bearing", "surface", "sector"),
     )
 )

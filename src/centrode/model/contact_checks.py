@@ -19,6 +19,8 @@ def needs_events(mechanism: Description) -> bool:
     """Whether a description has what makes events: stops, clamps, conditions, belts, or friction that sticks more."""
     if mechanism.stops or mechanism.clamps or mechanism.events:
         return True
+    if mechanism.motors or mechanism.controllers:
+        return True
     dry = (load for load in mechanism.loads if isinstance(load, HingeFriction | GuideFriction))
     return any(load.static is not None or load.surface_speed for load in dry)
 

@@ -24,6 +24,7 @@ from centrode.model.motion_parameter import (
     MotionParameter,
     drive_coordinate,
 )
+from centrode.model.motors import MOST_CONTROLLERS, Controller, DriveMotor
 from centrode.model.reading import (
     FRAME,
     DescriptionPart,
@@ -89,6 +90,8 @@ class Description(DescriptionPart):
     stops: Annotated[tuple[Stop, ...], bounded_list(MOST_CONTACTS)] = ()
     clamps: Annotated[tuple[Clamp, ...], bounded_list(MOST_CONTACTS)] = ()
     events: Annotated[tuple[EventCondition, ...], bounded_list(MOST_CONTACTS)] = ()
+    motors: Annotated[tuple[DriveMotor, ...], bounded_list(reading.DRIVES)] = ()
+    controllers: Annotated[tuple[Controller, ...], bounded_list(MOST_CONTROLLERS)] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()

@@ -81,6 +81,16 @@ from centrode.model.links import (
     Track,
 )
 from centrode.model.loads import FITS, FORMS, KINDS, OVER, STROKE_ENDS, Load
+from centrode.model.motors import (
+    MOST_CONTROLLERS,
+    MOST_STATES,
+    MOTOR_KINDS,
+    TARGETS,
+    Controller,
+    ControllerState,
+    DriveMotor,
+)
+from centrode.model.motors import MOST_ROWS as MOST_MOTOR_ROWS
 from centrode.model.page_standards import STANDARDS
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
@@ -417,6 +427,29 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "breakdown_slip": above_zero("ratio"),
         "ratio": above_zero("ratio"),
     },
+    DriveMotor: {
+        "kind": {"enum": list(MOTOR_KINDS)},
+        "idle_speed": above_zero("angular speed"),
+        "starting_moment": above_zero("torque"),
+        "breakdown_moment": above_zero("torque"),
+        "breakdown_slip": above_zero("ratio"),
+        "ratio": above_zero("ratio"),
+        "drive": NAME,
+        "voltage": quantity_schema("ratio"),
+        "resistance": above_zero("ratio"),
+        "constant": above_zero("ratio"),
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, MOST_MOTOR_ROWS)]},
+    },
+    ControllerState: {"rate": {**TEXT, "description": "a formula"}, "start": quantity_schema("ratio")},
+    Controller: {
+        **dict.fromkeys(("name", "drive", "measures"), NAME),
+        "target": AMOUNT,
+        "of": {"enum": list(TARGETS)},
+        **dict.fromkeys(("proportional", "integral", "derivative"), quantity_schema("ratio")),
+        "value": AMOUNT,
+        "states": table_of({"anyOf": [TEXT, reference_to(ControllerState)]}, MOST_STATES),
+        "most": above_zero("ratio"),
+    },
     Simulation: {
         "start": AMOUNT,
         "speed": AMOUNT,
@@ -486,6 +519,8 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "stops": list_of(reference_to(Stop), 0, MOST_CONTACTS),
         "clamps": list_of(reference_to(Clamp), 0, MOST_CONTACTS),
         "events": list_of(reference_to(EventCondition), 0, MOST_CONTACTS),
+        "motors": list_of(reference_to(DriveMotor), 0, reading.DRIVES),
+        "controllers": list_of(reference_to(Controller), 0, MOST_CONTROLLERS),
         "machine": reference_to(Machine),
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),

@@ -27,6 +27,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     ContactMode,
     row_numbers,
 )
+from centrode.dynamics.forward_dynamics.controllers import Control, outputs_of, states_of
 from centrode.dynamics.forward_dynamics.elimination import (
     Elimination,
     Entries,
@@ -133,6 +134,7 @@ class Terms:
     rates : of the value of every kept drive by time
     measures : of every contact its coordinate, its speed and the force of its mode along it
     conditions : of every user's event what passes zero
+    outputs, output_powers, state_rates : of controllers
 
     Rows, values, speeds and bias of contacts follow those of the closures, where modes are given.
     """
@@ -149,6 +151,9 @@ class Terms:
     at: Positions
     measures: Sequence[ContactMeasure] = ()
     conditions: Sequence[Number] = ()
+    outputs: Sequence[Number] = ()
+    output_powers: Sequence[Number] = ()
+    state_rates: Sequence[Number] = ()
 
     def without_contacts(self, equations: int) -> Terms:
         """The terms with the rows of the closures alone."""
@@ -178,6 +183,7 @@ class EquationsOfMotion:
     references : of every equation the size that its diagonal in S has elsewhere; S itself where they are left out
     contacts : stops, clamps and dry friction
     conditions : user's events
+    controls : controllers
     """
 
     tree: SpanningTree
@@ -191,6 +197,7 @@ class EquationsOfMotion:
     references: tuple[Number, ...] = ()
     contacts: tuple[Contact, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    controls: tuple[Control, ...] = ()
 
     @property
     def has_events(self) -> bool:
@@ -234,8 +241,12 @@ class EquationsOfMotion:
         speeds: Sequence[Number],
         time: Number,
         modes: Sequence[ContactMode] | None = None,
+        states: Sequence[Number] | None = None,
     ) -> Terms:
-        """The equations at one state; with `modes` the contacts have their rows and forces too."""
+        """The equations at one state; with `modes` the contacts have their rows and forces too.
+
+        `states` are those of controllers, that of the start if left out.
+        """
         jets = JetFunctions(m)
         laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
         plain = self.tree.positions(m, self.numbers, values, {k: law.value for k, law in laws.items()})
@@ -245,6 +256,7 @@ class EquationsOfMotion:
         columns = [self._column(jets, values, plain, k, time) for k in range(self.size)]
         mass, force = self._inertia(state, columns)
         powers = self._add_loads(state, columns, force)
+        outputs, output_powers, state_rates = self._add_controls(m, state, columns, force, states)
         rows, residuals = self._closures(jets, in_time, columns)
         gaps = [jet.coefficients[0] for jet in residuals]
         drifts = [jet.coefficients[1] for jet in residuals]
@@ -277,7 +289,39 @@ class EquationsOfMotion:
             plain,
             measures,
             [] if modes is None else [self._condition(one, state, time) for one in self.conditions],
+            outputs,
+            output_powers,
+            state_rates,
         )
+
+    def _add_controls(
+        self,
+        m: Namespace,
+        state: JointState,
+        columns: Sequence[JointState],
+        force: Vector,
+        states: Sequence[Number] | None,
+    ) -> tuple[list[Number], list[Number], list[Number]]:
+        """Add the forces of controllers; their outputs, powers, and the rates of their states."""
+        if not self.controls:
+            return [], [], []
+        measured = [
+            (0.0, 0.0)
+            if control.measures is None
+            else (control.measures.value(state), control.measures.slope(state).value)
+            for control in self.controls
+        ]
+        known = states_of(self.controls) if states is None else states
+        outputs, rates = outputs_of(m, self.controls, state.time, measured, known)
+        powers: list[Number] = []
+        for control, output in zip(self.controls, outputs, strict=True):
+            if control.drives is None:
+                powers.append(0.0)
+                continue
+            for k in self._reach(control.drives):
+                add_term(force, k, times(control.drives.slope(columns[k]).value, output))
+            powers.append(times(output, control.drives.slope(state).value))
+        return outputs, powers, rates
 
     def _measure(
         self,

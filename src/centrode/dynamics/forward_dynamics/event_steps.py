@@ -133,7 +133,7 @@ def contact_function(
     ]
     values = tree.values(m, [variable(name) for name in names.coordinates])
     speeds = [variable(name) for name in names.speeds]
-    terms = equations.terms(m, values, speeds, variable(TIME), modes)
+    terms = equations.terms(m, values, speeds, variable(TIME), modes, [variable(x) for x in names.states])
     count = equations.equations
     rows, bias = terms.rows[count:], terms.bias[count:]
     system = equations.system(m, terms.without_contacts(count))
@@ -542,12 +542,13 @@ class EventWatch:
         state[first : first + len(names.speeds), 0] += felt.shifts[:, rows] @ impulses
         works_at = [self._places[name] for name in names.works]
         count, kept = len(self.contacts), len(felt.rates)
+        driven = len(self.integration.equations.controls)
         for k, work in zip(numbers, works, strict=True):
             state[works_at[len(works_at) - count + k], 0] += work
         if kept:
             given = felt.reactions[:, rows] @ impulses
             for k in range(kept):
-                state[works_at[len(works_at) - count - kept + k], 0] -= given[k] * felt.rates[k]
+                state[works_at[len(works_at) - count - driven - kept + k], 0] -= given[k] * felt.rates[k]
 
     def _rest_of_impacts(self, state: Array, felt: ContactForces, number: int, bound: float) -> float:
         """Time [s] in which impacts that get ever smaller come to an end; NaN where that is not at once."""

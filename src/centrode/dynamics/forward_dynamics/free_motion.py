@@ -12,9 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.contacts import conditions_of, contacts_of
+from centrode.dynamics.forward_dynamics.controllers import controls_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
 from centrode.dynamics.forward_dynamics.free_loads import (
     DriveEffort,
+    coordinate_of_drive,
     dry_frictions_of,
     free_loads_of,
     shafts_of,
@@ -233,6 +235,7 @@ def free_motion_of(
         shafts=shafts_of(mechanism),
         contacts=contacts_of(mechanism, dry_frictions_of(mechanism, burden.loads)),
         conditions=conditions_of(mechanism),
+        controls=controls_of(mechanism, coordinate_of_drive),
     )
     equations, rank = solvable_equations(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
 from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function
 from centrode.dynamics.forward_dynamics.initial_position import units_of
@@ -163,6 +164,7 @@ class MotionIntegration:
         found = dict.fromkeys(self.problem.carried, 0.0)
         found |= dict(zip(names.coordinates, start.coordinates, strict=True))
         found |= dict(zip(names.speeds, start.speeds, strict=True))
+        found |= dict(zip(names.states, states_of(self.equations.controls), strict=True))
         closing = evaluate(
             self.problem.of_closing,
             found
@@ -170,7 +172,7 @@ class MotionIntegration:
             | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
         )
         # rotors and flags are those of the start; the start itself is closed already
-        kept = (*names.coordinates, *names.speeds, *names.works)
+        kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
         return np.array(
             [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
         )
@@ -304,6 +306,7 @@ class MotionIntegration:
             *range(*names.part(names.speeds).indices(count)),
         ]
         own += range(*names.part(names.works).indices(count))
+        own += range(*names.part(names.states).indices(count))
 
         def whole(y: Array) -> list[float]:
             values = carried.copy()

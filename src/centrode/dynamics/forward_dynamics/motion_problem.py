@@ -19,6 +19,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     STOP,
     ContactMode,
 )
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.elimination import is_zero, times
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Flags
 from centrode.dynamics.forward_dynamics.spanning_tree import JointValues, Rotor
@@ -78,6 +79,7 @@ class MotionNames:
     held: tuple[str, ...] = ()
     guards: tuple[str, ...] = ()
     sides: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, equations: EquationsOfMotion) -> MotionNames:
@@ -90,7 +92,12 @@ class MotionNames:
             tuple(f"speed {k}" for k in size),
             tuple(
                 f"work {k}"
-                for k in range(len(worked_loads(equations)) + len(equations.kept) + len(equations.contacts))
+                for k in range(
+                    len(worked_loads(equations))
+                    + len(equations.kept)
+                    + len(equations.controls)
+                    + len(equations.contacts)
+                )
             ),
             tuple(f"counts {row}" for row in equations.flagged),
             tuple(f"active {k}" for k in range(len(equations.contacts))),
@@ -98,6 +105,7 @@ class MotionNames:
             tuple(f"held {k}" for k in range(len(equations.contacts))),
             tuple(f"guard {k}" for k in range(len(guards_of(equations)))),
             tuple(f"side {k}" for k in range(len(equations.conditions))),
+            tuple(f"state {k}" for k in range(len(states_of(equations.controls)))),
         )
 
     @property
@@ -108,7 +116,14 @@ class MotionNames:
     @property
     def unknowns(self) -> tuple[str, ...]:
         """All that is followed, in order."""
-        return (*self.coordinates, *self.cosines, *self.sines, *self.speeds, *self.works)
+        return (
+            *self.coordinates,
+            *self.cosines,
+            *self.sines,
+            *self.speeds,
+            *self.works,
+            *self.states,
+        )
 
     def part(self, names: Sequence[str]) -> slice:
         """Where some of them stand in a row that has all of them."""
@@ -167,6 +182,7 @@ class Rates:
     accelerations: Sequence[Number]
     powers: Sequence[Number]
     flags: Flags
+    states: Sequence[Number] = ()
 
 
 def rates_of(
@@ -177,20 +193,22 @@ def rates_of(
     time: Number,
     flags: Flags | None = None,
     modes: Sequence[ContactMode] | None = None,
+    states: Sequence[Number] | None = None,
 ) -> Rates:
     """Accelerations and powers."""
-    terms = equations.terms(m, values, speeds, time, modes)
+    terms = equations.terms(m, values, speeds, time, modes, states)
     accelerations, forces, chosen = equations.accelerations(m, terms, flags)
     kept = forces[equations.equations - len(equations.kept) : equations.equations]
     powers = [terms.powers[k] for k in worked_loads(equations)]
     # a drive's constraint is its value less the law: what moves the mechanism acts against the row
     powers += [-(force * rate) for force, rate in zip(kept, terms.rates, strict=True)]
+    powers += terms.output_powers
     behind = dict((number, forces[row]) for row, number in equations.contact_rows if row < len(forces))
     for number, (contact, one) in enumerate(zip(equations.contacts, terms.measures, strict=False)):
         # a belt works on what sticks to it; stops and clamps do not move
         carried = times(-behind[number], contact.drift) if contact.kind == FRICTION else 0.0
         powers.append(times(one.strength, one.speed) + carried)
-    return Rates(accelerations, powers, chosen)
+    return Rates(accelerations, powers, chosen, terms.state_rates)
 
 
 def turned_rotor(rotor: Rotor, by: Number) -> Rotor:
@@ -213,14 +231,18 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
     }
     rows = equations.flagged
     modes = modes_of(names, variable)
+    states = [variable(name) for name in names.states]
     flags = {row: m.less(0.5, variable(name)) for row, name in zip(rows, names.flags, strict=True)}
     time = variable(TIME)
-    found = rates_of(m, equations, JointValues(coordinates, rotors), speeds, time, flags or None, modes)
+    found = rates_of(
+        m, equations, JointValues(coordinates, rotors), speeds, time, flags or None, modes, states
+    )
     rates: dict[str, Number] = dict(zip(names.coordinates, speeds, strict=True))
     rates |= {name: -(speeds[k] * rotors[k][1]) for k, name in zip(tree.angles, names.cosines, strict=True)}
     rates |= {name: speeds[k] * rotors[k][0] for k, name in zip(tree.angles, names.sines, strict=True)}
     rates |= dict(zip(names.speeds, found.accelerations, strict=True))
     rates |= dict(zip(names.works, found.powers, strict=True))
+    rates |= dict(zip(names.states, found.states, strict=True))
     closing = _closing(equations, names, coordinates, speeds, time)
     watched = LIMIT in closing
     early = (*CONTROLS, *parameters)
@@ -252,7 +274,8 @@ def _closing(
         active = {
             row: m.less(0.5, m.abs(variable(names.active[number]))) for row, number in equations.contact_rows
         }
-        terms = equations.terms(m, values, speeds, time, modes)
+        states = [variable(name) for name in names.states]
+        terms = equations.terms(m, values, speeds, time, modes, states)
         system = equations.system(m, terms, active=active)
         shift = equations.shift_to_close(terms, system)
         q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
@@ -295,7 +318,8 @@ def _guards(
 ) -> tuple[dict[str, Number], Number]:
     """Values of all guards behind a step, and whether one has passed zero."""
     m = EXPRESSIONS
-    terms = equations.terms(m, values, speeds, time, modes)
+    states = [variable(name) for name in names.states]
+    terms = equations.terms(m, values, speeds, time, modes, states)
     system = equations.system(m, terms, flags)
     _solution, forces = system.solve(system.force, terms.bias)
     rows = {number: row for row, number in equations.contact_rows}
@@ -385,7 +409,13 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
                 inverse = 1.0 / scale
                 parts = [part * inverse for part in parts]
             fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
+    for name in names.states:
+        # a state has no unit to be compared with: its own size, or one
+        reach = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
+        parts = [variable(prefix + name) / reach for prefix in (OF_FIFTH, OF_THIRD)]
+        fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     together = fifth + 0.01 * third
-    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(2 * equations.size))
+    count = 2 * equations.size + len(names.states)
+    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(count))
     # nothing erred, or something has no value
     return m.where(m.less(0.0, together), size, together) / (SHARE * variable(TOLERANCE))

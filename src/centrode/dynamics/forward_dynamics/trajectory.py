@@ -51,6 +51,7 @@ class Trajectory:
     steps : number of steps
     contact_forces : (n, contacts) [N or N m], along the coordinates of contacts
     contact_modes : (n, contacts), -1 or 1 where a contact is closed, sticks or holds
+    outputs : (n, controllers) [N or N m]
     """
 
     time: Array
@@ -89,6 +90,7 @@ class Trajectory:
     attempts: int
     contact_forces: Array
     contact_modes: Array
+    outputs: Array
 
 
 def trajectory_points(mechanism: Mechanism) -> tuple[str, ...]:
@@ -123,7 +125,8 @@ def trajectory_of(
         values = tree.values(ARRAYS, q)
         fixed = dict(zip(carried, states, strict=True))
         modes = modes_of(names, fixed.__getitem__)
-        terms = equations.terms(ARRAYS, values, w, times, modes)
+        held = list(states[names.part(names.states)])
+        terms = equations.terms(ARRAYS, values, w, times, modes, held)
         flags = {row: fixed[name] > 0.5 for row, name in zip(equations.flagged, names.flags, strict=True)}
         a, forces, _flags = equations.accelerations(ARRAYS, terms, flags if equations.contacts else None)
         jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, a, strict=True)]
@@ -141,6 +144,7 @@ def trajectory_of(
                 works[load.label] = works.get(load.label, 0.0) + done
         followed = [equations.loads[k].label for k in worked_loads(equations)]
         followed += [f"drive {kept.name}" for kept in equations.kept]
+        followed += [control.label for control in equations.controls]
         followed += [contact.label for contact in equations.contacts]
         for label, work in zip(followed, states[names.part(names.works)], strict=True):
             works[label] = works.get(label, 0.0) + work
@@ -163,6 +167,7 @@ def trajectory_of(
             multipliers[:, sorted(equations.dependent)] = np.nan
         gaps = [np.abs(_row(x, n)) for x in terms.values[: equations.equations]]
         drifts = [np.abs(_row(x, n)) for x in terms.speeds[: equations.equations]]
+        outputs = np.array([_row(x, n) for x in terms.outputs]).reshape(-1, n).T
         mode_numbers = np.array([_row(one.active, n) for one in modes or ()]).reshape(-1, n).T
     return Trajectory(
         times, np.array(q).T.reshape(n, count), np.array(w).T.reshape(n, count),
@@ -174,6 +179,7 @@ def trajectory_of(
         np.max(drifts, axis=0, initial=0.0) if drifts else np.zeros(n),
         _statuses(steps, times), steps.events, steps.ended, steps.cause, scheme, executor,
         steps.rows.shape[1] - 1, steps.attempts, in_contacts, mode_numbers,
+        outputs,
     )  # fmt: skip
 
 

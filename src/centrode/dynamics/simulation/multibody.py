@@ -61,30 +61,40 @@ def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMot
 
 
 def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
-    """What drives: a force by a formula along the first drive."""
+    """What drives: a force by a formula along the first drive, and motors of drives."""
+    motors = tuple(
+        _effort_of(mechanism, [drive.id for drive in mechanism.drives].index(motor.drive), motor.law)
+        for motor in mechanism.motors
+    )
     if law == "0":
-        return ()
+        return motors
     if not mechanism.drives:
         what = _("the coordinate along which the driving moment acts is not given")
         raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
-    first = mechanism.motion_parameter.drives[0]
+    return (_effort_of(mechanism, 0, law), *motors)
+
+
+def _effort_of(mechanism: Mechanism, number: int, law: str) -> DriveEffort:
+    """A force or moment by a formula along a drive, positive in the sense of the drive."""
+    driven = mechanism.motion_parameter.drives[number]
     driving = Driving(
-        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"), _sense_of_first_drive(mechanism)
+        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"),
+        _sense_of_drive(mechanism, number),
     )
 
     def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
         # the formula knows the coordinate, with the zero and the sense that its author may have chosen
-        return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
+        return driven.sense * driving.over(m, t, driven.value_of(measure), driven.sense * rate)
 
-    return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+    return DriveEffort(driven.name, along, frozenset(driving.formula.used))
 
 
-def _sense_of_first_drive(mechanism: Mechanism) -> float:
-    """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
-    first = mechanism.drives[0]
-    if not first.has_law:
-        return mechanism.motion_parameter.drives[0].sense
-    return float(path_of(mechanism.model_copy(update={"drives": (first,)}), 1.0).forward)
+def _sense_of_drive(mechanism: Mechanism, number: int = 0) -> float:
+    """Sense of a drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
+    drive = mechanism.drives[number]
+    if not drive.has_law:
+        return mechanism.motion_parameter.drives[number].sense
+    return float(path_of(mechanism.model_copy(update={"drives": (drive,)}), 1.0).forward)
 
 
 @dataclass(frozen=True)
@@ -107,7 +117,7 @@ class MultibodySetting:
     @property
     def sense(self) -> float:
         """Sense of the first drive along its coordinate."""
-        return _sense_of_first_drive(self.mechanism)
+        return _sense_of_drive(self.mechanism)
 
     @property
     def duration(self) -> float:
@@ -233,6 +243,7 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory, reactions: 
         **_energies(setting, course),
         **_judgements(setting, course),
         **_contacts(setting, course),
+        **_outputs(setting, course),
         **_happenings(course),
     }
     labels = _labels(setting, course)
@@ -257,9 +268,11 @@ def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
         drive_value[2]["units"] = " ".join(units)
     joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}
     contacts = contact_labels(free)
+    controlled = tuple(one.description.name for one in free.equations.controls)
     touched = {"contact": labels_of(contacts)} if contacts else {}
     return {
         **touched,
+        **({"controller": labels_of(controlled)} if controlled else {}),
         "time": vocabulary_variable("time", ("sample",), course.time),
         "drive_value": drive_value,
         "point": labels_of(free.points),
@@ -383,6 +396,7 @@ def work_sorts(free: FreeMotion) -> dict[str, str]:
     for contact in free.equations.contacts:
         rubs = contact.kind == FRICTION
         sorts[contact.label] = str(EnergyClass.FRICTION if rubs else EnergyClass.OTHER)
+    sorts |= {control.label: "drive" for control in free.equations.controls}
     driven = [label for label in sorts if label in {f"drive {name}" for name in free.drives}]
     return sorts | dict.fromkeys([*driven, *(f"drive {kept.name}" for kept in free.equations.kept)], "drive")
 
@@ -442,6 +456,14 @@ def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variab
         "contact_force": force,
         "contact_mode": vocabulary_variable("contact_mode", ("sample", "contact"), modes),
     }
+
+
+def _outputs(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Outputs of controllers."""
+    if not setting.free.equations.controls:
+        return {}
+    name = "controller_output"
+    return {name: vocabulary_variable(name, ("sample", "controller"), course.outputs)}
 
 
 def _happenings(course: Trajectory) -> dict[str, Variable]:
