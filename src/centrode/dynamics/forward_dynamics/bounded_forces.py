@@ -16,8 +16,8 @@ Array = npt.NDArray[np.float64]
 
 SLACK = 1e-12
 """Share of what the forces and their accelerations are made of by which a bound may be passed."""
-BLOCKS, CHANGES = 20, 2000
-"""Changes of all that are wrong at once, then of the first that is wrong: Murty's rule, which ends."""
+BLOCKS, CHANGES, SWEEPS = 20, 200, 5000
+"""Changes of all that are wrong at once, then of the first one (Murty's rule); sweeps where that goes round."""
 
 
 def forces_within(matrix: Array, right: Array, low: Array, high: Array) -> tuple[Array, Array]:
@@ -27,11 +27,6 @@ def forces_within(matrix: Array, right: Array, low: Array, high: Array) -> tuple
     ----------
     matrix, right : W (n, n), symmetric without negative eigenvalues, and q (n)
     low, high : (n), bounds that may be infinite
-
-    Raises
-    ------
-    ArithmeticError
-        No choice of bounds fits, which rounding alone can bring about.
     """
     count = len(right)
     if count == 0:
@@ -54,11 +49,30 @@ def forces_within(matrix: Array, right: Array, low: Array, high: Array) -> tuple
         freed = ((at < 0) & (w < -scale)) | ((at > 0) & (w > scale))
         wrong = np.flatnonzero(above | below | freed)
         if not len(wrong):
-            return np.clip(force, low, high), w
+            # what the others hold and still is pushed goes to its bound
+            left = (at == 0) & (np.abs(w) > 1e3 * scale) & np.isfinite(np.where(w > 0.0, low, high))
+            if not np.any(left):
+                return np.clip(force, low, high), w
+            k = int(np.argmax(np.where(left, np.abs(w), -1.0)))
+            at[k] = -1 if w[k] > 0.0 else 1
+            continue
         changed = wrong if change < BLOCKS else wrong[:1]
         for k in changed:
             at[k] = 1 if above[k] else -1 if below[k] else 0
-    raise ArithmeticError("no forces fit their bounds")
+    return _swept(matrix, right, low, high)
+
+
+def _swept(matrix: Array, right: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """The same by sweeps of Gauss and Seidel, which creep towards a solution whatever the matrix."""
+    force = np.clip(np.zeros(len(right)), low, high)
+    for _sweep in range(SWEEPS):
+        before = force.copy()
+        for k, own in enumerate(np.diag(matrix)):
+            if own > 0.0:
+                force[k] = min(max(force[k] - (matrix[k] @ force + right[k]) / own, low[k]), high[k])
+        if np.max(np.abs(force - before)) <= SLACK * np.max(np.abs(force)):
+            break
+    return force, matrix @ force + right
 
 
 def _one_force(mobility: float, right: float, low: float, high: float) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ bounds. (F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan, nan
@@ -29,7 +29,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Contact,
     ContactMode,
 )
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.equations_of_motion import DEPENDENT, EquationsOfMotion
 from centrode.dynamics.forward_dynamics.motion_problem import (
     CONDITION,
     CONTROLS,
@@ -73,6 +73,7 @@ from centrode.numerics.integrators import Integrator
 from centrode.numerics.python_functions import Function, python_function
 
 if TYPE_CHECKING:
+    from centrode.dynamics.forward_dynamics.change_points import Detour
     from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -86,6 +87,8 @@ ACCUMULATED = 2e-5
 """Impacts that end within this share of the usual time are taken together."""
 SOON = 1e-3
 """Share of the usual time after which the side of a condition that begins at zero is looked at."""
+LOOKS = 33
+"""Instants on a detour around a change point at which guards are looked at."""
 HALVINGS = 60
 AT_THE_LIMIT = 1e-6
 """What holds is at its limit where its event says so and this share is not missing."""
@@ -102,6 +105,7 @@ class ContactForces:
     values, speeds : of their coordinates (contacts)
     forwards, backwards : forces that they would have if they slipped
     free : accelerations of the rows (rows) without forces in them
+    loose : what their own forces would add if no closure held (rows)
     mobility : (rows, rows), accelerations of the rows by forces along them
     shifts : (coordinates, rows), changes of the speeds by impulses along the rows
     reactions : (kept drives, rows), impulses of kept drives by impulses along the rows
@@ -114,6 +118,7 @@ class ContactForces:
     forwards: Array
     backwards: Array
     free: Array
+    loose: Array
     mobility: Array
     shifts: Array
     reactions: Array
@@ -145,6 +150,8 @@ def contact_function(
         outputs |= {f"forwards {k}": one.forwards, f"backwards {k}": one.backwards}
     for i, row in enumerate(rows):
         outputs[f"free {i}"] = _product(row, moved) + bias[i]
+        alone = system.mass.forward(row)
+        outputs[f"loose {i}"] = system.mass.product(alone, alone)
         shift, forces = system.solve(row, still)
         outputs |= {f"mobility {i} {j}": _product(other, shift) for j, other in enumerate(rows)}
         outputs |= {f"shift {i} {k}": shift.get(k, 0.0) for k in range(equations.size)}
@@ -223,12 +230,12 @@ class EventWatch:
         )
         numbers = np.array(found, dtype=np.float64)
         own = numbers[: 4 * count].reshape(count, 4)
-        width = 1 + rows + size + kept
+        width = 2 + rows + size + kept
         by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
         rest = numbers[4 * count + rows * width :]
         return ContactForces(
-            own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1 : 1 + rows],
-            by_row[:, 1 + rows : 1 + rows + size].T, by_row[:, 1 + rows + size :].T,
+            own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1], by_row[:, 2 : 2 + rows],
+            by_row[:, 2 + rows : 2 + rows + size].T, by_row[:, 2 + rows + size :].T,
             rest[:kept], rest[kept:],
         )  # fmt: skip
 
@@ -366,6 +373,22 @@ class EventWatch:
         self._of_one_step[_END] = time
         attempt()
         return found.copy()
+
+    def clear_until(self, detour: Detour, carried: Array) -> float | None:
+        """The end of a detour around a change point, or an instant behind the point before which nothing happens [s].
+
+        None where something happens before the change point itself.
+        """
+        problem, last = self.integration.problem, detour.centre
+        count = len(problem.unknowns)
+        for time in np.linspace(detour.begin, detour.end, LOOKS)[1:]:
+            there = [*detour.at(np.array([time]))[:, 0], *carried[count:]]
+            closed = self.integration.closing_function([float(time), 1.0, *self._numbers, *there])
+            guards = [closed[row - HEADER] for row in self._guard_rows]
+            if min(guards, default=0.0) < 0.0:
+                return last if last > detour.centre else None
+            last = float(time)
+        return float(detour.end)
 
     # what follows
 
@@ -593,6 +616,7 @@ class EventWatch:
         """
         held: dict[int, float] = {}
         before = {k: self._get(state, "active", k) for k in self._rows}
+        rested: set[int] = set()
         for k in self._rows:
             contact, active = self.contacts[k], before[k]
             slow = TOUCHING * self.units[k] * self.rate
@@ -603,6 +627,8 @@ class EventWatch:
                 slip = float(felt.speeds[k]) - contact.drift
                 if abs(slip) <= slow or k in comes:
                     held[k] = 0.0
+                    if k not in comes:
+                        rested.add(k)
                 self._set(state, "sense", k, 0.0 if k in held else float(np.sign(slip)))
             else:
                 for bound in (AT_LEAST, AT_MOST):
@@ -614,27 +640,27 @@ class EventWatch:
         time = float(state[0, 0])
         for k in self._rows:
             contact, active = self.contacts[k], before[k]
-            bound = held.get(k, 0.0)
             if contact.kind == FRICTION:
-                sticks = k in forces
-                self._set(state, "active", k, 1.0 if sticks else 0.0)
-                if sticks and not active:
+                self._set(state, "active", k, 1.0 if k in forces else 0.0)
+                if k in forces and not active:
                     self._set(state, "held", k, float(felt.values[k]) - contact.drift * time)
-                if sticks and not active and time > 0.0:
-                    self.events.append(Event(time, STICKS, nan, contact.label))
-                if not sticks and active:
-                    self.events.append(Event(time, SLIPS, nan, contact.label))
+                # what others hold is at rest too, whatever its own friction does
+                stays = k in forces or (k in held and self._is_implied(felt, k, forces))
+                was = bool(active) or k in rested
+                if stays is not was and time > 0.0:
+                    self.events.append(Event(time, STICKS if stays else SLIPS, nan, contact.label))
             elif contact.kind == STOP:
-                closed = k in forces
-                self._set(state, "active", k, bound if closed else 0.0)
-                if closed:
-                    level = contact.least if bound < 0.0 else contact.most
-                    assert level is not None
-                    self._set(state, "held", k, float(level))
-                if closed and not active and time > 0.0:
-                    self.events.append(Event(time, CLOSES, nan, contact.label))
-                if active and not closed:
-                    self.events.append(Event(time, OPENS, nan, contact.label))
+                self._choose_mode_of_stop(state, k, held.get(k, 0.0) if k in forces else 0.0, active)
+
+    def _choose_mode_of_stop(self, state: Array, number: int, bound: float, before: float) -> None:
+        contact, time = self.contacts[number], float(state[0, 0])
+        self._set(state, "active", number, bound)
+        if bound:
+            level = contact.least if bound < 0.0 else contact.most
+            assert level is not None
+            self._set(state, "held", number, float(level))
+        if bool(bound) is not bool(before) and (before or time > 0.0):
+            self.events.append(Event(time, CLOSES if bound else OPENS, nan, contact.label))
 
     def _held_forces(
         self,
@@ -644,40 +670,72 @@ class EventWatch:
         let_go: set[int],
     ) -> dict[int, float]:
         """Forces of what goes on to be held, by contacts; what slips gets its sense."""
-        held = dict(held)
-        if not held:
-            return {}
-        while True:
+        # what closures hold already needs no force
+        fast = {k for k in held if self._follows(felt, self._rows[k], [])}
+        held = {k: bound for k, bound in held.items() if k not in fast}
+        found = {k: 0.0 for k in fast if self.contacts[k].kind != STOP}
+        for k in [one for one in held if one in let_go and self.contacts[one].kind == FRICTION]:
+            force = self._force_alone(state, felt, k, held)
+            least, most = self._bounds(felt, k)
+            near = AT_THE_LIMIT * (most - least)
+            if force >= most - near or force <= least + near:
+                self._set(state, "sense", k, -1.0 if force >= most - near else 1.0)
+                del held[k]
+        while held:
             numbers = list(held)
             rows = [self._rows[k] for k in numbers]
             right = self._slipping(state, felt)
-            low, high = np.empty(len(numbers)), np.empty(len(numbers))
-            for place, k in enumerate(numbers):
-                contact = self.contacts[k]
-                if contact.kind == FRICTION:
-                    least, most = sorted((float(felt.forwards[k]), float(felt.backwards[k])))
-                    if contact.static is not None:
-                        least, most = min(-float(contact.static), least), max(float(contact.static), most)
-                    low[place], high[place] = least, most
-                elif contact.kind == CLAMP:
-                    low[place], high[place] = -inf, inf
-                else:
-                    # pushed down from a bound above, up from one below
-                    low[place], high[place] = (-inf, 0.0) if held[k] > 0.0 else (0.0, inf)
-            forces, rest = forces_within(felt.mobility[np.ix_(rows, rows)], right[rows], low, high)
-            slipping = self._first_to_slip(numbers, forces, rest, (low, high), felt, let_go)
+            low, high = np.array([self._bounds(felt, k, held[k]) for k in numbers]).T
+            forces, rest = forces_within(felt.mobility[rows][:, rows], right[rows], low, high)
+            slipping = self._first_to_slip(numbers, forces, rest, (low, high), felt)
             if slipping is None:
+                found |= {
+                    k: float(force)
+                    for k, force in zip(numbers, forces, strict=True)
+                    if self.contacts[k].kind != STOP or force != 0.0
+                }
                 break
             k, sense = slipping
             self._set(state, "sense", k, sense)
             del held[k]
-        found = {}
-        for place, k in enumerate(numbers):
-            contact = self.contacts[k]
-            if contact.kind == STOP and forces[place] == 0.0:
-                continue
-            found[k] = float(forces[place])
         return found
+
+    def _bounds(self, felt: ContactForces, number: int, bound: float = 0.0) -> tuple[float, float]:
+        """Least and greatest force of a contact that is held."""
+        contact = self.contacts[number]
+        if contact.kind == CLAMP:
+            return -inf, inf
+        if contact.kind == STOP:
+            # pushed down from a bound above, up from one below
+            return (-inf, 0.0) if bound > 0.0 else (0.0, inf)
+        least, most = sorted((float(felt.forwards[number]), float(felt.backwards[number])))
+        if contact.static is not None:
+            least, most = min(-float(contact.static), least), max(float(contact.static), most)
+        return least, most
+
+    def _force_alone(self, state: Array, felt: ContactForces, number: int, held: dict[int, float]) -> float:
+        """The force of a contact where others that hold the same thing leave everything to it, as the steps do."""
+        rows, right = [self._rows[number]], self._slipping(state, felt)
+        for k in held:
+            if k != number and not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return float(np.linalg.solve(felt.mobility[rows][:, rows], -right[rows])[0])
+
+    def _is_implied(self, felt: ContactForces, number: int, others: Iterable[int]) -> bool:
+        """Whether a contact cannot move where others hold."""
+        rows: list[int] = []
+        for k in others:
+            if not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return self._follows(felt, self._rows[number], rows)
+
+    def _follows(self, felt: ContactForces, row: int, rows: list[int]) -> bool:
+        """Whether a row follows from closures and independent other rows, as far as the steps tell them apart."""
+        pivot = float(felt.mobility[row, row])
+        if rows:
+            along = np.linalg.solve(felt.mobility[rows][:, rows], felt.mobility[rows, row])
+            pivot -= float(felt.mobility[row, rows] @ along)
+        return bool(pivot <= DEPENDENT * felt.loose[row])
 
     def _first_to_slip(
         self,
@@ -686,7 +744,6 @@ class EventWatch:
         rest: Array,
         bounds: tuple[Array, Array],
         felt: ContactForces,
-        let_go: set[int],
     ) -> tuple[int, float] | None:
         """The first friction that does not hold, and the sense in which it slips; None where all hold."""
         low, high = bounds
@@ -697,11 +754,10 @@ class EventWatch:
             if felt.forwards[k] > felt.backwards[k]:
                 # what drives either way holds nowhere
                 return k, 1.0 if rest[place] >= 0.0 else -1.0
-            near = AT_THE_LIMIT * (most - least) if k in let_go else 0.0
-            if force >= most - near:
+            if force >= most:
                 # pushed forwards as much as can be: it goes backwards
                 return k, -1.0 if most > least or rest[place] <= 0.0 else 1.0
-            if force <= least + near:
+            if force <= least:
                 return k, 1.0
         return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite
 from typing import Any, TypeAlias
@@ -237,11 +237,13 @@ class MotionIntegration:
                 break
             if guard is not None and state[guard, 0] != 0.0:
                 back = self._step_back(take, parameters, state, kept, detours, rate)
-                passed = self._pass_change_point(parameters, state if back is None else back[0], tolerance)
+                passed = self._pass_change_point(
+                    parameters, state if back is None else back[0], tolerance, watch
+                )
                 if back is not None and not isinstance(passed, str) and passed[0] is not None:
                     state, kept = back
                 elif back is not None:
-                    passed = self._pass_change_point(parameters, state, tolerance)
+                    passed = self._pass_change_point(parameters, state, tolerance, watch)
                 if isinstance(passed, str):
                     ended, cause = CHANGE_POINT, passed
                     break
@@ -411,7 +413,11 @@ class MotionIntegration:
         return before, rows
 
     def _pass_change_point(
-        self, parameters: Array, state: Array, tolerance: float
+        self,
+        parameters: Array,
+        state: Array,
+        tolerance: float,
+        watch: EventWatch | None = None,
     ) -> tuple[Detour | None, Event | None] | str:
         """Pass the change point ahead, if it is one; the state is that behind it then.
 
@@ -434,6 +440,13 @@ class MotionIntegration:
             state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
             return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
         count = len(self.problem.unknowns)
+        if watch is not None:
+            clear = watch.clear_until(detour, state[HEADER:, 0])
+            if clear is None:
+                # something happens before the change point is reached: it is integrated straight up to there
+                state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
+                return None, None
+            detour = replace(detour, short=detour.end - clear)
         before = self._energy(state[HEADER:, 0], time)
         landed = detour.at(np.array([detour.end]))[:, 0]
         values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(
