@@ -69,6 +69,14 @@ def event_facts(run: xr.Dataset) -> Iterator[Fact]:
             yield Fact(Name(name), Sentence("its formula does not change its sign"))
 
 
+def _unit_of_impulse(run: xr.Dataset, part: str) -> str:
+    """Unit of the impulses of a part: that of its force times that of time."""
+    names = [str(name) for name in run["contact"].values] if "contact" in run.coords else []
+    units = str(run["contact_force"].attrs["units"]).split(", ") if names else ["N"]
+    unit = units[names.index(part) if part in names and len(units) > 1 else 0]
+    return f"{unit} s"
+
+
 def event_text(run: xr.Dataset, number: int) -> Text:
     """When an event was, where, and its impulse."""
     part = parts_of_events(run)[number]
@@ -82,7 +90,7 @@ def event_text(run: xr.Dataset, number: int) -> Text:
             "{part} at {time}, impulse {impulse}, {lost} lost",
             part=Name(part),
             time=time,
-            impulse=Number(impulse, "N s"),
+            impulse=Number(impulse, _unit_of_impulse(run, part)),
             lost=lost,
         )
     return Sentence("{part} at {time}", part=Name(part), time=time)
