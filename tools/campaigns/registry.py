@@ -16,6 +16,7 @@ from tools.campaigns.free_motions import examples as free_examples
 from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
+from tools.campaigns.imports import cases as imports
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -41,5 +42,6 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        imports.CAMPAIGN,
     )
 }

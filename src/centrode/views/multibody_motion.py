@@ -184,6 +184,7 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("energies"), energies_at_end(run))
     yield Fact(Sentence("constraints"), _residuals(run))
     yield from _occasions(run)
+    yield from _regime(results)
     if "worst_imbalance" in run.attrs:
         share = Number(float(run.attrs["worst_imbalance"]), digits=".1e")
         yield Fact(
@@ -194,6 +195,33 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
         )
     if results.second is not None:
         yield Fact(Sentence("reduced equation"), _second_route(results))
+
+
+def _regime(results: SimulationResults) -> Iterator[Fact]:
+    """The regime that the motion runs up to, and what is left of departures from it after a period."""
+    periodic = results.periodic
+    if periodic is None:
+        return
+    period = Number(periodic.period, "s", ".9g")
+    left = Number(float(np.max(np.abs(periodic.multipliers), initial=0.0)), digits=".4g")
+    if periodic.indifferent:
+        text = Sentence("comes back every {period}, and so do neighbouring motions", period=period)
+    elif periodic.stable:
+        text = Sentence(
+            "every {period}, of a departure {share} is left after each", period=period, share=left
+        )
+    else:
+        text = Sentence(
+            "every {period}, unstable: a departure becomes {share} times as great", period=period, share=left
+        )
+    yield Fact(Sentence("steady regime"), text)
+    if periodic.turning is not None:
+        yield Fact(Sentence("mean speed"), Number(periodic.mean_speed, "rad/s", unit_fixed=True))
+    time = results.run_up_time
+    if time is not None:
+        yield Fact(
+            Sentence("run-up"), Sentence("within one hundredth of it after {time}", time=Number(time, "s"))
+        )
 
 
 def _scheme(run: xr.Dataset) -> Text:

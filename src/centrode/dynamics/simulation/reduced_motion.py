@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import importlib
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, tau
@@ -56,10 +54,6 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.simulation import MOST_TURNS, Simulation
-
-# the reduced equation needs nothing of the other route
-_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
-_many = functools.partial(importlib.import_module, "centrode.dynamics.simulation.many_mechanisms")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
