@@ -34,6 +34,7 @@ COMMANDS = (
     "gears",
     "trains",
     "synthesise",
+    "improve",
     "centres",
     "centrodes",
     "diagrams",

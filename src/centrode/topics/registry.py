@@ -23,6 +23,7 @@ READ_SPEEDS = Lazily("centrode.cli.option_values", "read_speeds")
 READ_PAIRS = Lazily("centrode.cli.option_values", "read_pairs")
 READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_values", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_values", "read_ranges")
+READ_BOUNDS = Lazily("centrode.cli.option_values", "read_bounds")
 READ_VARIED = Lazily("centrode.cli.option_values", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_values", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_values", "read_instant")
@@ -1166,6 +1167,45 @@ SYNTHESIS = Topic(
     subject="synthesis",
 )
 
+IMPROVEMENT = Topic(
+    name="improve",
+    compute=Lazily("centrode.synthesis.improvement", "improve"),
+    result=Lazily("centrode.synthesis.improvement", "Improvement"),
+    view=Lazily("centrode.views.improvement", "sheet"),
+    command=Command(
+        help=mark("Change dimensions until a number of the motion is least."),
+        options=(
+            ValueOption(
+                "objective",
+                mark("MEASURE"),
+                mark("What is reduced, as stroke(slide_H), reaction(B/AB) or a formula of the motion."),
+                required=True,
+            ),
+            ValueOption(
+                "free",
+                mark("PATH=FIRST:LAST"),
+                mark('Dimension with its range, as "links.AB.length=3.4 m:3.6 m"; repeatable.'),
+                several=True,
+                required=True,
+                read=READ_RANGES,
+            ),
+            ValueOption(
+                "keep",
+                mark("MEASURE=FIRST:LAST"),
+                mark('Number kept within bounds, as "stroke(slide_H)=1.5 m:"; repeatable.'),
+                several=True,
+                parameter="constraints",
+                read=READ_BOUNDS,
+            ),
+            ChoiceOption(
+                "aim", ("least", "greatest"), mark("Whether the objective becomes least or greatest.")
+            ),
+        ),
+        progress=mark("searching"),
+        pictures=False,
+    ),
+)
+
 GEAR_TRAIN = Topic(
     name="gear-train",
     compute=Lazily("centrode.gears.train_results", "gear_train"),
@@ -1191,6 +1231,7 @@ TOPICS: tuple[Topic, ...] = (
     MOTION_LAWS,
     GEAR_PAIR,
     SYNTHESIS,
+    IMPROVEMENT,
     GEAR_TRAIN,
     ROTATABILITY,
     REPAIR,
