@@ -78,7 +78,7 @@ def test_an_improved_press_keeps_its_stroke_and_is_at_the_optimum() -> None:
     slide = ct.motion(better.mechanism, 361).slide.to_numpy()[:, 0]
     assert 1.579 * (1 - 1e-3) < np.ptp(slide) < 1.581 * (1 + 1e-3)
     # nothing near that keeps the stroke is better: random places within the ranges
-    moved, at = measured(press, PRESS_FREE, ["reaction(B/AB)", "stroke(slide_H)"], 91)
+    _moved, at = measured(press, PRESS_FREE, ["reaction(B/AB)", "stroke(slide_H)"], 91)
     low, high = np.array(list(box.values())).T
     best, _stroke = (value for value, _by in at([one.after for one in better.free]))
     for values in np.random.default_rng(4).uniform(low, high, (150, 3)):

@@ -218,7 +218,7 @@ def improve(
         moved = solver(mechanism, names, samples, outputs=outputs)
     except InputError as error:
         # what the solver calls measure_2 is the second of the numbers that are kept
-        place, _between, rest = error.where.removeprefix("outputs measure_").partition("_")
+        place, _between, _rest = error.where.removeprefix("outputs measure_").partition("_")
         if not error.where.startswith("outputs measure_") or not place.isdigit():
             raise
         raise InputError(wheres[int(place)], error.what, error.repair) from None

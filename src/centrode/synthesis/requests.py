@@ -56,7 +56,9 @@ STROKE_TOPOLOGIES = (
     "whitworth-quick-return",
     "six-bar-press",
 )
-TOPOLOGIES = tuple(dict.fromkeys((*FOUR_BARS, *STROKE_TOPOLOGIES)))
+SPHERICAL = ("spherical-four-bar", "spherical-crank-rocker")
+"""Topologies of the spherical four-bar linkage O-A-B-D."""
+TOPOLOGIES = tuple(dict.fromkeys((*FOUR_BARS, *SPHERICAL, *STROKE_TOPOLOGIES)))
 MOST_FREE = 40
 MOST_TARGETS = 2000
 MOST_POSES = 5
@@ -235,12 +237,19 @@ class Synthesis(DescriptionPart):
         return self.targets if isinstance(self.targets, tuple) else ()
 
     def _read_targets(self) -> Rows:
+        sphere = {
+            "path": TableColumns(("angle", "angle", "angle"), "[longitude, latitude, angle of the drive]", 2),
+            "motion": TableColumns(
+                ("angle",) * 4, "[longitude, latitude, angle of the link from east, angle of the drive]", 3
+            ),
+        }
         columns = {
             "path": TableColumns(("length", "length", "angle"), "[x, y, angle of the drive]", 2),
             "motion": TableColumns(
                 ("length", "length", "angle", "angle"), "[x, y, angle of the link, angle of the drive]", 3
             ),
             "function": TableColumns(("angle", "angle"), "[angle of the crank, angle of the rocker]", 2),
+            **(sphere if self.topology in SPHERICAL else {}),
         }[self.kind]
         try:
             rows = read_rows(self.targets, columns, READING.get().folder)

@@ -12,7 +12,15 @@ from centrode.synthesis.answers import SynthesisResults
 from centrode.synthesis.function_synthesis import function_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
-from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SynthesisTask, read_synthesis, synthesis_from
+from centrode.synthesis.requests import (
+    FOUR_BARS,
+    MOST_POSES,
+    SPHERICAL,
+    SynthesisTask,
+    read_synthesis,
+    synthesis_from,
+)
+from centrode.synthesis.spherical_synthesis import spherical_answers
 from centrode.synthesis.stroke_synthesis import stroke_answers
 
 SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
@@ -83,6 +91,8 @@ def synthesise(
         return pose_answers(task, progress, stop)
     if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:
         return path_answers(task, progress, stop)
+    if wanted.topology in SPHERICAL and wanted.kind != "strokes":
+        return spherical_answers(task, progress, stop)
     if wanted.kind == "strokes":
         return stroke_answers(task)
     if wanted.kind == "function" and wanted.topology in FOUR_BARS:
