@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 import centrode as ct
 from centrode.synthesis import spherical_dyads, spherical_four_bars, spherical_synthesis
 
+
 @pytest.fixture(autouse=True)
 def few_starts(monkeypatch) -> None:
     """What these tests look for is found from few starts as well."""

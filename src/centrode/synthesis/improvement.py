@@ -237,7 +237,7 @@ def improve(
         what = _("no dimensions within the ranges are better")
         raise MotionError("objective", what, _("widen a range, free more dimensions, or loosen what is kept"))
     chosen = low + (high - low) * place
-    improved = _describe(moved, dict(zip(names, chosen.tolist(), strict=True)))
+    improved = describe_moved(moved, dict(zip(names, chosen.tolist(), strict=True)))
     fine = PROOF * (samples - 1) + 1
     before = _measure(solver(mechanism, names, fine, outputs=outputs), measures)
     proved = _prove(improved, names, outputs, measures, limits, fine)
@@ -384,14 +384,15 @@ def _descend(
     return place
 
 
-def _describe(moved: Solver, values: Mapping[str, float]) -> Mechanism:
+def describe_moved(moved: Solver, values: Mapping[str, float]) -> Mechanism:
     """The description with these numbers, its estimates of angles put to where the links are then.
 
-    The angle of a guided link, of a driven one, or of a link that carries a guide is a dimension, and stays.
+    The angle of a guided link and of the one that guides it, and that of a driven link, is a dimension, and stays.
     """
     mechanism = moved.mechanism
     if mechanism.space == "plane":
-        fixed = {guide.link for guide in mechanism.guides} | {guide.on for guide in mechanism.guides}
+        guided = [guide for guide in mechanism.guides if guide.link is not None]
+        fixed = {guide.link for guide in guided} | {guide.on for guide in guided}
         fixed |= {drive.link for drive in mechanism.drives}
         stands = moved.move(list(values.values())).angle[0].tolist()
         names = motion(mechanism, 3).link.to_numpy().tolist()

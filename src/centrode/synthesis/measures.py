@@ -128,7 +128,7 @@ def _time_ratio(text: str, output: str, where: str, number: int) -> Measure:
         for k in cells.tolist():
             ends = np.array([speed[k], step * pace * rate[k], speed[k + 1], step * pace * rate[k + 1]])
             part = _vanishing_part(ends)
-            weights, weight_slopes = _hermite(part)
+            weights, weight_slopes = hermite(part)
             its = np.stack([by[k], step * pace * rate_by[k], by[k + 1], step * pace * rate_by[k + 1]])
             zeros.append(places[k] + step * part)
             moves.append(-step * (weights @ its) / float(weight_slopes @ ends))
@@ -142,7 +142,7 @@ def _time_ratio(text: str, output: str, where: str, number: int) -> Measure:
     return Measure(text, {first: velocity, second: acceleration}, compute, "1")
 
 
-def _hermite(part: float) -> tuple[Array, Array]:
+def hermite(part: float | Array) -> tuple[Array, Array]:
     """Weights of value, slope, value, slope at the ends of a cell, and their derivatives by the part."""
     t = part
     weights = np.array([1 - 3 * t**2 + 2 * t**3, t - 2 * t**2 + t**3, 3 * t**2 - 2 * t**3, t**3 - t**2])
@@ -155,7 +155,7 @@ def _vanishing_part(ends: Array) -> float:
     low, high = 0.0, 1.0
     for _halving in range(60):
         middle = (low + high) / 2
-        if float(_hermite(middle)[0] @ ends) * ends[0] > 0:
+        if float(hermite(middle)[0] @ ends) * ends[0] > 0:
             low = middle
         else:
             high = middle

@@ -10,6 +10,7 @@ from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.synthesis.answers import SynthesisResults
 from centrode.synthesis.function_synthesis import function_answers
+from centrode.synthesis.mechanism_synthesis import mechanism_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
 from centrode.synthesis.requests import (
@@ -87,6 +88,8 @@ def synthesise(
     """
     task = task_of(source)
     wanted = task.synthesis
+    if task.mechanism is not None:
+        return mechanism_answers(task, progress, stop)
     if wanted.kind == "motion" and wanted.topology in FOUR_BARS and is_exact(task):
         return pose_answers(task, progress, stop)
     if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:

@@ -42,6 +42,7 @@ NUMBERS = {
     "time_ratio": Sentence("time ratio"),
     "stroke": Sentence("stroke"),
     "swing": Sentence("swing"),
+    "dwell_spread": Sentence("motion during the dwell"),
     "limit_angle": Sentence("angle of the crank between the limit positions"),
 }
 
