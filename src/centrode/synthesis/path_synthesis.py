@@ -53,9 +53,9 @@ CRANK_MARGIN = 1e-4
 """Of Grashof's rule, in units of frame and crank: a crank that only just turns is none."""
 OPEN_CANDIDATES = 320
 RANDOM_STARTS = 1500
-BOX_PLACES, FINE_PLACES = 48, 7200
+BOX_PLACES, FINE_PLACES = 24, 7200
 """Crank angles at which the box around a mechanism is looked at, in the search and of an answer."""
-BOX_MARGIN = 1e-3
+BOX_MARGIN = 2e-3
 TRADES = 5
 """Steps of a trade-off."""
 MET = 1e-6
