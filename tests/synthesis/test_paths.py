@@ -13,14 +13,14 @@ from tools.campaigns.synthesis.coupler_continuation import walk
 import centrode as ct
 from centrode.synthesis import four_bars, path_synthesis, start_candidates
 from centrode.synthesis.cognates import cognates
-from centrode.synthesis.requests import parse_synthesis
+from centrode.synthesis.requests import SYNTHESES
 
 PATHS = Path(__file__).parent.parent / "reference" / "paths"
 
 
 def request(lines: str, constraints: str = "") -> ct.SynthesisTask:
     text = f'[synthesis]\ntopology = "crank-rocker"\nkind = "path"\n{lines}\n[synthesis.constraints]\n{constraints}'
-    return parse_synthesis(text, "path.toml", PATHS)
+    return SYNTHESES.parse(text, "path.toml", PATHS)
 
 
 def rows(name: str) -> np.ndarray:
