@@ -12,8 +12,11 @@ from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.free_motions import cases as free_motions
+from tools.campaigns.free_motions import examples as free_examples
+from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
+from tools.campaigns.imports import cases as imports
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -34,8 +37,11 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         clusters.CAMPAIGN,
         clearances.CAMPAIGN,
         free_motions.CAMPAIGN,
+        free_examples.CAMPAIGN,
+        free_references.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        imports.CAMPAIGN,
     )
 }
