@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.contacts import cases as contacts
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.free_motions import examples as free_examples
 from tools.campaigns.free_motions import references as free_references
@@ -39,6 +40,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         free_motions.CAMPAIGN,
         free_examples.CAMPAIGN,
         free_references.CAMPAIGN,
+        contacts.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
