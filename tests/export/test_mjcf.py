@@ -247,13 +247,13 @@ SWUNG = """
 
 
 BOWL = """
-    title = "Disc in a bowl, on a spring"
+    title = "Disc that rolls in a bowl, on a spring"
     gravity = [0, -9.81]
-    frame.points = { F = [0.3, 0.5] }
-    links.disc = { points = { C = [0, 0], P = [0.15, 0] }, mass = 2, centre = "C", inertia = 0.04 }
-    points = { C = [0.48, -0.64] }
+    frame.points = { O = [0, 0], F = [0.3, 0.5] }
+    links.OC = { length = 0.8, mass = 0.5, shape = "rod" }
+    links.disc = { points = { C = [0, 0], P = [0.15, 0] }, angle = 0, mass = 2, centre = "C", inertia = 0.04 }
     rolling = [{ link = "disc", centre = "C", radius = 0.2, along = { centre = [0, 0], radius = 1, inside = true } }]
-    drives = [{ link = "disc", start = 0, speed = 1 }]
+    drives = [{ link = "OC", start = -0.9, speed = 1 }]
     [[loads]]
     kind = "spring"
     points = ["P", "F"]
