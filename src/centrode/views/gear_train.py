@@ -55,7 +55,7 @@ def sheet(results: GearTrainResults) -> Sheet:
         ),
         pictures=Deferred(
             {
-                "wheels": lambda: _wheels(results),
+                "wheels": lambda: wheels_drawing(results),
                 "velocities": lambda: _velocities(results),
                 "angular-velocities": lambda: _angular_velocities(results),
             }
@@ -287,7 +287,7 @@ def _circle(layer: str, centre: tuple[float, float], radius: float) -> OutlinePi
     return OutlinePiece(layer, angles, radius * arms + np.array(centre), radius * across)
 
 
-def _wheels(results: GearTrainResults) -> OutlineDrawing:
+def wheels_drawing(results: GearTrainResults) -> OutlineDrawing:
     """Pitch circles of the chosen train seen along the axes; stages stand beside each other."""
     train, radius = results.chosen, results.gear_train.module / 2
     pieces: list[OutlinePiece] = []
