@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.synthesis import curve_matching, four_bars, path_synthesis
+from centrode.synthesis import four_bars, path_synthesis, start_candidates
 from centrode.synthesis.cognates import cognates
 from centrode.synthesis.requests import SYNTHESES
 from coupler_continuation import walk
@@ -97,7 +97,7 @@ def test_constraints_are_kept(monkeypatch) -> None:
         'crank = "OA"\ntransmission = "40 deg"\nlength_ratio = 6\npivots = { x = [-60, 60], y = [-60, 60] }\n'
         "size = [125, 100]"
     )
-    few = functools.partial(curve_matching.closed_candidates, count=100)
+    few = functools.partial(start_candidates.closed_candidates, count=100)
     monkeypatch.setattr(path_synthesis, "closed_candidates", few)
     found = ct.synthesise(request('targets = "yu1.csv"', limits))
     for answer in found.answers:

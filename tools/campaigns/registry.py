@@ -12,6 +12,8 @@ from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.free_motions import cases as free_motions
+from tools.campaigns.free_motions import examples as free_examples
+from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
 from tools.campaigns.pages import cases as pages
@@ -34,6 +36,8 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         clusters.CAMPAIGN,
         clearances.CAMPAIGN,
         free_motions.CAMPAIGN,
+        free_examples.CAMPAIGN,
+        free_references.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,

@@ -154,7 +154,7 @@ def server_application(
     lanes = Lanes(make(settings.work), make(settings.work))
 
     @contextlib.asynccontextmanager
-    async def living(_application: Starlette) -> AsyncIterator[None]:
+    async def lifespan(_application: Starlette) -> AsyncIterator[None]:
         # what computes loads its libraries while the browser opens the page
         warming = [asyncio.create_task(_warm(runner)) for runner in (lanes.quick, lanes.slow)]
         try:
@@ -227,7 +227,7 @@ def server_application(
     ]
     if STATIC.is_dir():
         routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
-    return Starlette(routes=routes, lifespan=living)
+    return Starlette(routes=routes, lifespan=lifespan)
 
 
 async def _warm(runner: Runner) -> None:

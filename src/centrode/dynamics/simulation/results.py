@@ -7,8 +7,8 @@ from math import tau
 from typing import TYPE_CHECKING, Any
 
 from centrode.dynamics.masses import has_masses_or_loads
-from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, equations_for
-from centrode.dynamics.simulation.simulate import Tell, simulate
+from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, Tell, equations_for
+from centrode.dynamics.simulation.simulate import simulate
 from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.locale import _
@@ -195,8 +195,8 @@ def _check_multibody(run: xr.Dataset) -> None:
     time = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
     cause = str(run.attrs["cause"])
     what = {
-        "change point": _("it reaches a change point that it does not pass, after {time:.6g} s: {cause}"),
-        "blow-up": _("the motion grows beyond all bounds after {time:.6g} s: {cause}"),
+        "change point": _("it reaches a change point that it does not pass: {cause}"),
+        "blow-up": _("the motion grows beyond all bounds: {cause}"),
     }.get(run.attrs["ended"], _("it is broken off after {time:.6g} s: {cause}"))
     repair = _("give a shorter time, or look at what acts there: loads, masses, speeds at the start")
     raise MotionError("", what.format(time=time, cause=cause), repair)

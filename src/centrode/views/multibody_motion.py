@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, TypeAlias
@@ -72,6 +73,8 @@ Array: TypeAlias = NDArray[np.float64]
 
 PORTRAIT, PORTRAITS = "simulation-phase-", 6
 """Names of phase portraits begin so; and how many there are at most."""
+MARGIN = 0.04
+"""Share of a phase portrait's width that is left free on either side."""
 SAFETY = 100.0
 """Errors of steps add up, and energies turn over more than once."""
 
@@ -347,10 +350,13 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
         (Curve(Name(name), speeds, number),),
         float(np.max(np.abs(speeds), initial=0.0)),
         legend=False,
+        dots=((Sentence("start"), float(values[0]), float(speeds[0])),),
     )
-    return Plot(
-        Sentence("Phase portrait of {name}", name=Name(name)), title, over_samples(label, values), ((panel,),)
-    )
+    # a curve that turns at its ends would run along the sides of the picture
+    margin = MARGIN * float(np.ptp(values))
+    ends = (float(np.min(values)) - margin, float(np.max(values)) + margin) if margin else None
+    abscissa = replace(over_samples(label, values), ends=ends)
+    return Plot(Sentence("Phase portrait of {name}", name=Name(name)), title, abscissa, ((panel,),))
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:
