@@ -77,6 +77,19 @@ radius = "5 mm"
     assert np.allclose(np.hypot(*pin.T), tangential / math.cos(angle), rtol=1e-6)
 
 
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_polygons_have_the_whole_force_between_teeth(moment: float) -> None:
+    """The graphic way gives the pins of both wheels as the equations do, the radial part included."""
+    mechanism = _shafts(moment=moment)
+    found, exact = ct.force_polygons(mechanism, 0.3), ct.reactions(mechanism, at=[0.3])
+    forces = {name: np.array([force.real, force.imag]) for name, force in found.reactions.items()}
+    sizes = sorted(float(np.hypot(*force)) for force in forces.values())
+    expected = {float(np.hypot(*exact.joint_force.sel(side=side).to_numpy()[0])) for side in ("O/OA", "C/CB")}
+    for size in expected:
+        assert min(abs(size - one) for one in sizes) < 1e-9 * size
+    assert not any("radial component" in repr(step) for step in found.steps)
+
+
 def test_a_ring_presses_its_pinion_towards_its_centre() -> None:
     pair = ct.gear_pair("internal-gear-pair").geometry
     distance = (

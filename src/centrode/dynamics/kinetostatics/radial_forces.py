@@ -12,9 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from centrode.dynamics.kinetostatics.equations import ForceSystem
+from centrode.dynamics.kinetostatics.applied_forces import Outer
+from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Scheme, Teeth
 from centrode.dynamics.kinetostatics.joints import JointSide, column, tables
-from centrode.dynamics.state import Array
+from centrode.dynamics.state import Array, State
+from centrode.kinematics.preparation import Ready
 from centrode.model.gears import Gear
 from centrode.structure.constraints import GearRatio
 
@@ -22,6 +24,18 @@ from centrode.structure.constraints import GearRatio
 def tooth_senses(forces: ForceSystem) -> dict[str, Array]:
     """Sense (n) of the tangential force between the teeth of each pair, by the gear's id."""
     return {gear.id: np.sign(_tangential(forces, tie, sizes)) for gear, tie, sizes, _points in _pairs(forces)}
+
+
+def tangential_forces_at(prepared: Ready, state: State, outer: Outer) -> dict[str, Array]:
+    """Tangential forces (n, 2) on the second wheels of pairs [N], by the gear's id."""
+    scheme, teeth = Scheme.of(prepared.structure), Teeth.of(prepared.mechanism)
+    forces = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth).forces(outer.pulls)
+    samples = forces.system.shape[-1]
+    found = {}
+    for gear, tie, _sizes, _points in _pairs(forces):
+        unit = tables([forces.system.pulls[tie, 0][0].force], 2, samples)[:, 0]
+        found[gear.id] = column(forces.multipliers.get((tie, 0), 0.0), samples)[:, None] * unit
+    return found
 
 
 def radial_force_on(forces: ForceSystem, side: JointSide, senses: Mapping[str, Array]) -> Array:
