@@ -12,7 +12,12 @@ from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-import scipy.integrate
+from tools.campaigns.free_motions.references import (
+    LIBRARY,
+    chain_of_squares,
+    position_of_squares,
+    squeezer,
+)
 
 import centrode as ct
 from benchmarks.table import Promise, Row
@@ -24,6 +29,8 @@ from centrode.numerics.machine_code import cache
 CRANK, COUPLER, ROCKER, BASE = 0.3, 0.8, 0.6, 0.9
 START, SPEED, MOMENT, DURATION = math.pi / 3, 10.0, 0.1, 10.0
 LANES, LOOPS = 10_000, 40
+SQUEEZED, TURNED = 0.05, 33.81534072136017377697757
+"""Duration of A03 [s], and the angle of its crank then [rad] by quadrature of the energy to 25 digits."""
 STEP, SOLREF = 2.5e-5, 2e-4
 """MuJoCo's step [s] and time constant of a closure [s], with which its energy errs by some 3e-7 J."""
 
@@ -43,20 +50,6 @@ def four_bar() -> FreeMotion:
         loads=[{"kind": "torque", "link": "AB", "value": MOMENT}],
     )
     return free_motion_of(mechanism)
-
-
-def squares(loops: int) -> FreeMotion:
-    """IFToMM's chain of squares (A02)."""
-    rod = {"mass": 1.0, "shape": "rod", "length": 1.0}
-    links: dict[str, object] = {}
-    for k in range(loops + 1):
-        links[f"A{k}B{k}"] = {**rod, "points": {f"A{k}": [0, 0], f"B{k}": [1, 0]}, "angle": math.pi / 2}
-    for k in range(loops):
-        links[f"B{k}B{k + 1}"] = {**rod, "points": {f"B{k}": [0, 0], f"B{k + 1}": [1, 0]}, "angle": 0.0}
-    for link in links.values():
-        link.pop("length")  # type: ignore[attr-defined]
-    frame = {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}}
-    return free_motion_of(ct.Mechanism(gravity=[0.0, -9.81], frame=frame, links=links))
 
 
 FRESH = """
@@ -140,6 +133,15 @@ def free_motions() -> Iterator[Row]:
             Promise("energy error over MuJoCo's", error / theirs, at_most=1.0),
         ],
     )
+    taken, apart = _andrews()
+    yield Row(
+        "A03, 0.05 s",
+        {"steps [ms]": 1e3 * taken, "F off [m]": apart},
+        promises=[
+            Promise("steps of A03 [ms]", 1e3 * taken, at_most=1.0),
+            Promise("position of F of A03 [m]", apart, at_most=1e-9),
+        ],
+    )
     # what a process loads for it: modules of the package, llvmlite, and dask, which xarray imports where it is there
     for name, words in (("without dask", ("without dask",)), ("with dask", ())):
         loaded, simulated, again = _fresh_process(*words)
@@ -168,7 +170,7 @@ def free_motions() -> Iterator[Row]:
             Promise("their energy error [J]", worst, at_most=1e-4),
         ],
     )
-    chain = squares(LOOPS)
+    chain = free_motion_of(chain_of_squares(LOOPS))
     upright = chain.initial({"points.B0": (1.0, 0.0)})
     begun = time.perf_counter()
     chain.integration.explicit_steps(upright, 1.0, 1e-12)
@@ -187,24 +189,31 @@ def free_motions() -> Iterator[Row]:
     )
 
 
+def _andrews() -> tuple[float, float]:
+    """Time [s] of the steps of IFToMM's A03, and how far F is from the quadrature of its energy at 0.05 s [m]."""
+    free = free_motion_of(squeezer(LIBRARY).with_drives_held())
+    start = free.initial()
+    rate = free.integration.rate(start, SQUEEZED)
+    state = np.concatenate(
+        [[0.0, min(SQUEEZED, 0.01 / rate), 0.0, 0.0], free.integration.carried_values(start)]
+    )[:, None]
+    rows = np.empty((4096, len(free.integration.problem.carried) + 1))
+    kernel, numbers = free.integration.integrator(), free.integration.parameters(SQUEEZED, 1e-8, rate)
+    taken = best_clock_times(
+        {"steps": functools.partial(kernel.run, numbers, state, 1_000_000, rows)}, rounds=20
+    )["steps"]
+    angle = free.integrate(start, SQUEEZED, 1e-8, at=[SQUEEZED]).angles[0, free.links.index("OF")]
+    return taken, 0.007 * abs(float(angle) - TURNED)
+
+
 def _distance_from_closed_form(chain: FreeMotion, upright: InitialState) -> float:
     """Greatest distance of B0 [m] over 20 s from the rotating pendulum that all uprights are."""
     instants = np.linspace(0.0, 20.0, 201)
     course = chain.integrate(upright, 20.0, 1e-12, at=instants)
     if course.ended != "duration":
         return math.inf
-    inertia, weight = (LOOPS + 1) / 3 + LOOPS, ((LOOPS + 1) / 2 + LOOPS) * 9.81
-    angle = scipy.integrate.solve_ivp(
-        lambda _t, y: [y[1], weight / inertia * math.sin(y[0])],
-        (0.0, 20.0),
-        [0.0, 1.0],
-        method="DOP853",
-        t_eval=instants,
-        rtol=3e-14,
-        atol=1e-15,
-    ).y[0]
     places = course.places[:, chain.points.index("B0")]
-    return float(np.max(np.hypot(places[:, 0] - np.sin(angle), places[:, 1] - np.cos(angle))))
+    return float(np.max(np.linalg.norm(places - position_of_squares(LOOPS, instants), axis=1)))
 
 
 def _mujoco(coordinates: np.ndarray, speeds: np.ndarray) -> tuple[float, float]:

@@ -21,6 +21,7 @@ from centrode.app.sketch import (
     number,
     on_unit_sphere,
 )
+from centrode.app.sphere_drags import sphere_assignments
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
@@ -273,8 +274,6 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
 
 def edit_refusal(sketch: Sketch, name: str) -> str:
     """Why a point cannot be dragged to change lengths; empty where it can."""
-    if sketch.on_sphere and not sketch.is_short_form:
-        return _("on the sphere lengths and angles are changed in the text or in the fields")
     if name in sketch.marks["fixed"]:
         return _("this joint is held: switch Fixed off to drag it")
     if name not in sketch.places:
@@ -445,7 +444,8 @@ def reshaping_assignments(
             within = (*within, "placed") if isinstance(old, Mapping) else within
             yield from pair(within, places[point])
     if sketch.on_sphere:
-        return  # what a link needs follows from its points
+        yield from sphere_assignments(sketch, moved, assignment, pair)
+        return
     turned: dict[str, float] = {}
     for name, points in sketch.links.items():
         if len(points) < 2 or not any(point in moved for point in points):

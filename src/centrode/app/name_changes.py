@@ -91,7 +91,7 @@ def _replace_point(patch: Patch, old: str, name: str) -> None:
 
 def join_points(patch: Patch, operation: Operation) -> None:
     """Make one point of two."""
-    sketch = patch.plane_sketch()
+    sketch = patch.sketch
     points = operation.get("points") or [operation.get("point"), operation.get("to")]
     if not isinstance(points, list) or len(points) != 2 or points[0] == points[1]:
         raise InputError("", _('two different points are needed: ["A", "B"]'))

@@ -20,7 +20,7 @@ from centrode.model.reading import (
     nearest,
     value_text,
 )
-from centrode.model.settings import Display
+from centrode.model.settings import Display, GearReportWishes
 from centrode.model.values import (
     Flag,
     Text,
@@ -169,6 +169,8 @@ class GearPair(DescriptionPart):
     pin : diameter for the dimension over pins [m]; 1.7 modules by default
     speed : of the pinion [rad/s]
     moment : on the pinion [N m]
+    samples : places along the line of action
+    report : GearReportWishes
 
     Raises
     ------
@@ -197,6 +199,7 @@ class GearPair(DescriptionPart):
     speed: Annotated[float, PlainValidator(angular_speed)] | None = None
     moment: Annotated[float, quantity("torque", not_negative)] | None = None
     samples: Annotated[int, whole(2, 10_000)] = 101
+    report: GearReportWishes = GearReportWishes()
 
     if TYPE_CHECKING:
 

@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.model.cam import whole
 from centrode.model.description_files import DescriptionFiles
 from centrode.model.reading import KEY, DescriptionPart, Problem, choice, value_text
-from centrode.model.settings import Display
+from centrode.model.settings import Display, GearReportWishes
 from centrode.model.values import Text, angular_speed, positive, quantity, si
 
 KIND = "gear train"
@@ -99,6 +99,7 @@ class GearTrain(DescriptionPart):
     tolerance : of the ratio, relative
     mesh_efficiency : MeshLosses
     chosen : number of the train in the list that is shown in full
+    report : GearReportWishes
 
     Raises
     ------
@@ -127,6 +128,7 @@ class GearTrain(DescriptionPart):
     tolerance: Annotated[float, _share(0.0, 0.2)] = 0.02
     mesh_efficiency: MeshLosses = MeshLosses()
     chosen: Annotated[int, whole(1, 1000)] = 1
+    report: GearReportWishes = GearReportWishes()
 
     if TYPE_CHECKING:
 

@@ -29,7 +29,7 @@ PARTS = ("tables", "plots", "graphic")
 
 def proposed_repair(study: ReportStudy) -> ProposedRepair | None:
     """The repair that the report proposes; None where the mechanism makes its motion, or none was found."""
-    if study.is_cam:
+    if study.subject != "mechanism":
         return None
     try:
         result = result_of(ROTATABILITY, study)

@@ -14,6 +14,12 @@ from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing
 from centrode.sheets.plots import AxisLabel, CurveDiagram, Trace
 from centrode.sheets.sheet import Column, Deferred, Fact, Scalar, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text, Title
+from centrode.views.gear_train_chapters import (
+    choice_chapter,
+    conditions_chapter,
+    data_chapter,
+    motion_chapter,
+)
 
 if TYPE_CHECKING:
     from centrode.gears.planetary_trains import AnyTrain
@@ -49,9 +55,19 @@ def sheet(results: GearTrainResults) -> Sheet:
         ),
         pictures=Deferred(
             {
-                "wheels": lambda: _wheels(results),
+                "wheels": lambda: wheels_drawing(results),
                 "velocities": lambda: _velocities(results),
                 "angular-velocities": lambda: _angular_velocities(results),
+            }
+        ),
+        chapters=Deferred(
+            {
+                "data": lambda: data_chapter(results, SCHEMES[results.gear_train.scheme]),
+                "train-choice": lambda: choice_chapter(
+                    results, tuple(_facts(results)), trains_table(results, LISTED)
+                ),
+                "train-conditions": lambda: conditions_chapter(results),
+                "train-motion": lambda: motion_chapter(members_table(results)),
             }
         ),
         printed=(trains_table(results, LISTED), members_table(results)),
@@ -132,7 +148,7 @@ def _notes(results: GearTrainResults) -> Iterator[Text]:
             yield Sentence("driven from the sun the train locks itself")
 
 
-def _columns(results: GearTrainResults, trains: tuple[AnyTrain, ...]) -> Iterator[Column]:
+def _columns(trains: tuple[AnyTrain, ...], *, spelled: bool) -> Iterator[Column]:
     first = trains[0]
     letters: list[Text]
     if isinstance(first, PlanetaryTrain):
@@ -146,7 +162,14 @@ def _columns(results: GearTrainResults, trains: tuple[AnyTrain, ...]) -> Iterato
     for place in shown:
         teeth = np.array([train.teeth[place] for train in trains], dtype=np.float64)
         name = f"teeth_{shown.index(place) + 1}"
-        yield Column(name, teeth, head=letters[place])
+        yield _whole_column(name, teeth, letters[place], spelled=spelled)
+
+
+def _whole_column(name: str, values: Array, head: Text, *, spelled: bool) -> Column:
+    """Whole numbers: each spelled by itself where people read them, as numbers in files."""
+    if spelled:
+        return Column(name, tuple(Number(value) for value in values.tolist()), head=head)
+    return Column(name, values, head=head, whole=True)
 
 
 def trains_table(results: GearTrainResults, most: int | None) -> Table:
@@ -156,8 +179,10 @@ def trains_table(results: GearTrainResults, most: int | None) -> Table:
     length = Sentence("length") if isinstance(trains[0], OrdinaryTrain) else Sentence("diameter")
     return Table(
         (
-            Column("number", np.arange(1.0, len(trains) + 1), head=Sentence("number")),
-            *_columns(results, trains),
+            _whole_column(
+                "number", np.arange(1.0, len(trains) + 1), Sentence("number"), spelled=most is not None
+            ),
+            *_columns(trains, spelled=most is not None),
             Column(
                 "ratio", np.array([results.whole_ratio(train) for train in trains]), head=Sentence("ratio")
             ),
@@ -271,7 +296,7 @@ def _circle(layer: str, centre: tuple[float, float], radius: float) -> OutlinePi
     return OutlinePiece(layer, angles, radius * arms + np.array(centre), radius * across)
 
 
-def _wheels(results: GearTrainResults) -> OutlineDrawing:
+def wheels_drawing(results: GearTrainResults) -> OutlineDrawing:
     """Pitch circles of the chosen train seen along the axes; stages stand beside each other."""
     train, radius = results.chosen, results.gear_train.module / 2
     pieces: list[OutlinePiece] = []

@@ -35,7 +35,7 @@ const courses = computed<Course[]>(() => {
       const symbol = SYMBOLS[array]!;
       const lines: Course["lines"] = AXES.slice(0, now.axes).map((axis, k) => ({ label: symbol ? `${symbol}${axis}(${point.name})` : `${axis}(${point.name})`, array, thing, axis: k }));
       if (symbol) lines.push({ label: `${symbol}(${point.name})`, array, thing, axis: "size" });
-      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? `1${rate}` : "") : signed(`${length.unit}${rate}`), factor: length.factor, lines });
+      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? signed(`1${rate}`) : "") : signed(`${length.unit}${rate}`), factor: length.factor, lines });
     }
   }
   for (const link of shown.links) {
@@ -158,7 +158,7 @@ function NumbersTable() {
     ? Math.hypot(...Array.from({ length: now.axes }, (_, axis) => now.value(line.array, sample, line.thing, axis)))
     : now.value(line.array, sample, line.thing, line.axis)) * course.factor })));
   return (
-    <div class="table scroll" tabindex={0} role="region" aria-label={say("numbers")}>
+    <div class="table scroll long" tabindex={0} role="region" aria-label={say("numbers")}>
       <table>
         <thead><tr><th scope="col">{say("quantity")}</th><th scope="col" class="n">{say("value")}</th></tr></thead>
         <tbody>{rows.map((row) => <tr><th scope="row">{row.label}</th><td class="n">{withUnit(fixed(row.value, Math.max(1, Math.abs(row.value))), row.unit)}</td></tr>)}</tbody>

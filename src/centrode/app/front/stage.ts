@@ -447,7 +447,8 @@ export class Stage {
     for (const [spot, target] of [[a, line.target], [b, line.end]] as const) {
       make("circle", { class: target ? "catch" : "end", cx: spot[0]!, cy: spot[1]!, r: target ? 105 : 45 }, this.hint);
     }
-    const right = b[0]! >= a[0]!; // beside the end that the hand leads, away from the line
+    // beside the end that the hand leads, away from the line where there is room for it
+    const room = 140 * U, right = b[0]! >= a[0]! ? b[0]! + room < this.plane.wide * U : b[0]! - room < 0;
     const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (b[1]! <= a[1]! ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
     const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI, length = this.spherical ? arc(line.from, line.to) : size(way);
     const measured = withUnit(spelled(length * unit.factor, 4), unit.unit);
@@ -536,12 +537,16 @@ export class Stage {
     const point = scene.value?.points.find((one) => one.name === name), allowed = point?.handles[how] ?? false;
     const touch = event.pointerType === "touch", grip = this.flatOf(name), off = grip ? minus(this.begun, grip) : [0, 0];
     const drag = new Drag(name, how, (frame) => this.follow(frame));
+    const onto = (free: Place): string | null => {
+      const other = how === "edit" ? this.target(free, touch, "point") : null;
+      return other && other.name !== name ? other.name : null;
+    };
     const goal = (at: Place, last: { altKey: boolean } | null): Place => {
       const free = minus(at, off);
       if (this.spherical && how === "move") return this.globe.back(free, this.where().place(name));
       if (how === "move") return this.plane.back(free);
-      const onto = this.target(free, touch, "point");
-      return onto && onto.name !== name ? this.where().place(onto.name)! : this.meantFree(free, last);
+      const other = onto(free);
+      return other ? this.where().place(other)! : this.meantFree(free, last);
     };
     return {
       move: (at, last) => {
@@ -558,7 +563,10 @@ export class Stage {
           this.choose(chosen, last?.shiftKey ?? false);
           return;
         }
-        if (allowed && begun && last) void this.drop(drag, goal(this.at(last), last));
+        if (!(allowed && begun && last)) return;
+        const other = onto(minus(this.at(last), off));
+        if (other) void this.join(drag, name, other);
+        else void this.drop(drag, goal(this.at(last), last));
       },
       cancel: () => {
         this.svg.classList.remove("held");
@@ -628,6 +636,15 @@ export class Stage {
         if (answer.text !== undefined) state.accept(answer);
       });
     }
+    this.draw();
+  }
+
+  // A joint that is dropped on another one becomes one with it.
+  private async join(drag: Drag, name: string, other: string): Promise<void> {
+    drag.stop();
+    const answer = await edit({ do: "join", points: [name, other] });
+    this.live = null;
+    if (answer) selection.value = [answer.changed?.at(-1) ?? other].filter((one) => scene.value?.points.some((point) => point.name === one));
     this.draw();
   }
 

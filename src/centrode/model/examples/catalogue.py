@@ -18,7 +18,8 @@ from centrode.model.gear_pairs import GEAR_PAIRS, GearPair
 from centrode.model.gear_trains import GEAR_TRAINS, GearTrain
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import DescriptionPart, likely, read_file, value_text
-from centrode.model.toml import Described, description_kind, toml_tables
+from centrode.model.toml import Described as OneKind
+from centrode.model.toml import description_kind, toml_tables
 
 _FILES: Mapping[str, DescriptionFiles[Any]] = {
     files.kind: files for files in (MECHANISMS, CAMS, GEAR_PAIRS, GEAR_TRAINS)
@@ -32,6 +33,9 @@ CamSource: TypeAlias = AnyCam | str | Path
 GearPairSource: TypeAlias = GearPair | str | Path
 GearTrainSource: TypeAlias = GearTrain | str | Path
 DescriptionSource: TypeAlias = Mechanism | AnyCam | str | Path
+Described: TypeAlias = Mechanism | AnyCam | GearPair | GearTrain
+"""What a file may describe."""
+DescribedSource: TypeAlias = Described | str | Path
 
 
 GearPairName: TypeAlias = Literal[
@@ -107,7 +111,12 @@ def load_drawn(file_or_example: str | Path) -> Mechanism | AnyCam | GearPair:
     return _load_kinds(("linkage", "cam", "gear pair"), file_or_example)  # type: ignore[return-value]
 
 
-def _load(files: DescriptionFiles[Described], file_or_example: str | Path) -> Described:
+def load_description(file_or_example: str | Path) -> Described:
+    """What a TOML file describes, of any kind, or the built-in one of that name; InputError if there is neither."""
+    return _load_kinds(tuple(_FILES), file_or_example)  # type: ignore[return-value]
+
+
+def _load(files: DescriptionFiles[OneKind], file_or_example: str | Path) -> OneKind:
     path = _file(file_or_example)
     return files.read(path) if path is not None else files.example(str(file_or_example))
 
@@ -166,6 +175,22 @@ def description_of(source: DescriptionSource) -> Mechanism | AnyCam:
             _("this function takes a mechanism or a cam, its file or the name of a built-in one"), source
         )
     return source
+
+
+def reported_description(source: DescribedSource) -> Described:
+    """The description itself, or what `load_description` finds under a name; InputError for anything else."""
+    described: object = load_description(source) if isinstance(source, str | Path) else source
+    if isinstance(described, Mechanism | Cam | PlateCam | GearPair | GearTrain):
+        return described
+    what = _("this function takes a mechanism, a cam, or a pair or train of gears, its file or its name")
+    raise _refusal(what, described)
+
+
+def files_of(description: Described) -> DescriptionFiles[Any]:
+    """What reads and writes descriptions of the kind of one."""
+    if isinstance(description, Mechanism):
+        return MECHANISMS
+    return _FILES[description.kind]
 
 
 def _refusal(takes: str, given: object) -> InputError:
