@@ -13,8 +13,11 @@ from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.contacts import cases as contacts
 from tools.campaigns.free_motions import cases as free_motions
+from tools.campaigns.free_motions import examples as free_examples
+from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
+from tools.campaigns.imports import cases as imports
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -36,8 +39,11 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         clearances.CAMPAIGN,
         free_motions.CAMPAIGN,
         contacts.CAMPAIGN,
+        free_examples.CAMPAIGN,
+        free_references.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        imports.CAMPAIGN,
     )
 }

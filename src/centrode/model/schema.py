@@ -112,6 +112,7 @@ from centrode.model.settings import (
     ChosenCoordinate,
     Display,
     FlywheelShape,
+    GearReportWishes,
     Machine,
     ReportWishes,
     Shaft,
@@ -564,6 +565,13 @@ def mechanism_schema() -> Schema:
 
 _RATES = list_of(AMOUNT, 0, MOST_RATES)
 
+_GEAR_REPORT: Schema = {
+    **NOTE,
+    "chapters": CHAPTERS,
+    "digits": REPORT_DIGITS,
+    "full": {"type": "boolean"},
+    "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
+}
 PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: PROPERTIES[Display],
     Material: {"elasticity": above_zero("pressure"), "poisson": quantity_schema("ratio")},
@@ -620,14 +628,7 @@ PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     },
     ChapterText: CHAPTER_TEXT,
     TitlePage: TITLE_PAGE,
-    CamReportWishes: {
-        **NOTE,
-        "chapters": CHAPTERS,
-        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
-        "digits": REPORT_DIGITS,
-        "full": {"type": "boolean"},
-        "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
-    },
+    CamReportWishes: {**_GEAR_REPORT, "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS)},
     PlateCam: {
         "title": TEXT,
         "kind": {"const": "cam"},
@@ -713,14 +714,7 @@ CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     },
     ChapterText: CHAPTER_TEXT,
     TitlePage: TITLE_PAGE,
-    CamReportWishes: {
-        **NOTE,
-        "chapters": CHAPTERS,
-        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
-        "digits": REPORT_DIGITS,
-        "full": {"type": "boolean"},
-        "text": table_of(reference_to(ChapterText), MOST_CHAPTERS),
-    },
+    CamReportWishes: {**_GEAR_REPORT, "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS)},
     Cam: {
         "title": TEXT,
         "kind": {"const": "cam"},
@@ -792,7 +786,11 @@ GEAR_PAIR_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "speed": quantity_schema("angular speed"),
         "moment": quantity_schema("torque"),
         "samples": {"type": "integer", "minimum": 2, "maximum": 10_000},
+        "report": reference_to(GearReportWishes),
     },
+    ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
+    GearReportWishes: _GEAR_REPORT,
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""
 
@@ -832,7 +830,11 @@ GEAR_TRAIN_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "tolerance": {"type": "number", "minimum": 0, "maximum": 0.2},
         "mesh_efficiency": reference_to(MeshLosses),
         "chosen": {"type": "integer", "minimum": 1, "maximum": 1000},
+        "report": reference_to(GearReportWishes),
     },
+    ChapterText: CHAPTER_TEXT,
+    TitlePage: TITLE_PAGE,
+    GearReportWishes: _GEAR_REPORT,
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""
 

@@ -10,21 +10,17 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.numerics.dormand_prince import FIFTH, THIRD, A, B, C
 from centrode.numerics.initial_value_problems import (
     BEFORE,
     END,
-    FIFTH,
     HEADER,
     OF_FIFTH,
     OF_THIRD,
     SIZE,
     SMALLEST,
     STEP,
-    THIRD,
     TIME,
-    A,
-    B,
-    C,
     InitialValueProblem,
 )
 from centrode.numerics.python_functions import Function, python_function

@@ -177,7 +177,7 @@ def integrate_many(
     integration, names = free.integration, free.integration.names
     parameters = _parameters(free, equations, begun, float(instants[-1]), tolerance, lanes)
     carried = _carried_values(free, begun, parameters, lanes)
-    rate = integration.rate(start)
+    rate = integration.rate(start, float(instants[-1]))
     first = np.full(lanes, min(float(instants[-1]), 0.01 / rate))
     state = np.concatenate([np.zeros((1, lanes)), first[None], np.zeros((2, lanes)), carried])
     # what does not close is left where it is
@@ -254,7 +254,10 @@ def _parameters(
     known = np.all(np.isfinite(start.speeds), axis=0)
     fastest = np.max(np.abs(start.speeds[:, known]), axis=1, initial=0.0)
     own = free.integration.parameters(
-        duration, tolerance, free.integration.rate(InitialState(free.position.coordinates, fastest)), lanes
+        duration,
+        tolerance,
+        free.integration.rate(InitialState(free.position.coordinates, fastest), duration),
+        lanes,
     )
     found = free.integration.variables.values(equations)
     own[len(CONTROLS) :] = np.broadcast_to(found, (len(found), lanes))

@@ -19,10 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.numerics.complex_graphs import IMAGINARY, Parts, complex_parts, product
+from centrode.numerics.dormand_prince import C
 from centrode.numerics.executors import MACHINE_CODE, choose_executor
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.initial_value_problems import END, SAFETY, SMALLEST, TIME, C, InitialValueProblem
+from centrode.numerics.initial_value_problems import END, SAFETY, SMALLEST, TIME, InitialValueProblem
 from centrode.numerics.integrators import integrator_of
 from centrode.numerics.python_integrations import PythonIntegration
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from importlib import import_module
 from math import inf, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.controllers import states_of
@@ -60,6 +60,9 @@ from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+# explicit steps need no SciPy, which takes longer to load than most motions take
+_integrate = partial(import_module, "scipy.integrate")
 
 ROWS, MOST_ROWS = 1024, 65536
 """Steps in one call of the integrator: few at first, as room is made for all of them."""
@@ -146,8 +149,11 @@ class MotionIntegration:
         numbers = self.variables.values(self.equations)
         return np.concatenate([rows, np.broadcast_to(numbers, (len(numbers), lanes))])
 
-    def rate(self, start: InitialState) -> float:
-        """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest."""
+    def rate(self, start: InitialState, duration: float = inf) -> float:
+        """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest.
+
+        In equilibrium both are rounding: then what counts is what would be seen at the end of a duration [s].
+        """
         units = units_of(self.equations.tree, self.equations.numbers)
         values = self.equations.tree.values(ARRAYS, list(start.coordinates))
         with np.errstate(all="ignore"):
@@ -155,7 +161,7 @@ class MotionIntegration:
             accelerations, _forces, _flags = self.equations.accelerations(ARRAYS, terms)
         fast = float(np.max(np.abs(start.speeds) / units, initial=0.0))
         bent = float(np.max(np.abs(np.array(accelerations, dtype=np.float64)) / units, initial=0.0))
-        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0)
+        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0, 1.0 / duration)
         return rate if rate > 0.0 else 1.0
 
     def carried_values(self, start: InitialState) -> Array:
@@ -192,7 +198,7 @@ class MotionIntegration:
         duration [s], tolerance : of the error of a step, relative to what moves
         progress : called with the time reached [s]
         """
-        take, rate = self.integrator(executor), self.rate(start)
+        take, rate = self.integrator(executor), self.rate(start, duration)
         parameters = self.parameters(duration, tolerance, rate)
         first = min(duration, 0.01 / rate)
         state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
@@ -262,11 +268,7 @@ class MotionIntegration:
                 continue
             away = self._farthest(state, rate)
             if away > WILD:
-                ended = BLOW_UP
-                cause = _(
-                    "at {time:.9g} s something had moved {far:.3g} times the greatest length or as fast as that"
-                )
-                cause = cause.format(time=time, far=away)
+                ended, cause = BLOW_UP, self._wild_cause(state, away)
                 break
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or away > WILD
@@ -299,7 +301,9 @@ class MotionIntegration:
         Equations II, 2nd ed., 1996, section IV.8.)
         """
         followed = PythonIntegration(self.problem)
-        parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
+        parameters = [
+            float(x) for x in self.parameters(duration, tolerance, self.rate(start, duration))[:, 0]
+        ]
         carried = self.carried_values(start)
         names, count = self.names, len(self.problem.unknowns)
         angles = np.array(self.equations.tree.angles, dtype=np.intp)
@@ -323,7 +327,9 @@ class MotionIntegration:
         def rates(t: float, y: Array) -> Array:
             return np.array(followed.rates([t, *parameters, *whole(y)]))[own]
 
-        solver = Radau(rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance)
+        solver = _integrate().Radau(
+            rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance
+        )
         rows = [np.concatenate([[0.0], carried])]
         pieces = []
         ended, cause = DURATION, None
@@ -340,7 +346,7 @@ class MotionIntegration:
             if progress is not None:
                 progress(float(solver.t))
         reached = np.array(rows).T
-        followed_between = OdeSolution(reached[0], pieces)
+        followed_between = _integrate().OdeSolution(reached[0], pieces)
 
         def between(times: Array) -> Array:
             found = np.zeros((len(carried), len(times)))
@@ -471,6 +477,22 @@ class MotionIntegration:
         q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
         kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
+
+    def _wild_cause(self, state: Array, away: float) -> str:
+        """What has grown without bound, and the load that gives it most power."""
+        names, tree = self.names, self.equations.tree
+        q, w = (list(state[HEADER:, 0][names.part(kind)]) for kind in (names.coordinates, names.speeds))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, tree.values(ARRAYS, q), w, float(state[0, 0]))
+        sizes = np.abs(w) / units_of(tree, self.equations.numbers)
+        cause = _("at {time:.9g} s {part} had moved {far:.3g} times the greatest length or as fast as that")
+        part = tree.coordinates[int(np.argmax(np.nan_to_num(sizes, nan=np.inf)))].name
+        cause = cause.format(time=float(state[0, 0]), part=part, far=away)
+        powers = [float(power) for power in terms.powers]
+        if not powers or not max(powers) > 0.0:
+            return cause
+        load = self.equations.loads[int(np.argmax(powers))].label
+        return f"{cause}; " + _("the load that gives most power is {load}").format(load=load)
 
     def _fastest(self, state: Array) -> str:
         """Name of the coordinate whose speed changes most, or is the greatest."""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
 
+from centrode.errors import InputError
+from centrode.locale import _
 from centrode.model.contact_checks import needs_events
 from centrode.structure.plan import generic_mobility
 
@@ -12,6 +15,9 @@ if TYPE_CHECKING:
     from centrode.model.simulation import Simulation
 
 MULTIBODY, REDUCED = "multibody", "reduced"
+
+Tell: TypeAlias = Callable[[float], None]
+"""What is called with the share of a simulation that is done."""
 
 
 def equations_for(mechanism: Mechanism, settings: Simulation) -> str:
@@ -36,3 +42,12 @@ def moves_freely(mechanism: Mechanism) -> bool:
     if not mechanism.drives or not all(drive.has_law for drive in mechanism.drives):
         return True
     return len(mechanism.drives) < generic_mobility(mechanism)
+
+
+def no_settings() -> InputError:
+    """The refusal of a mechanism whose simulation nothing describes."""
+    return InputError(
+        "[simulation]",
+        _("it is missing"),
+        _('give driving = "20 - 2*v" and duration, or pass ct.Simulation'),
+    )

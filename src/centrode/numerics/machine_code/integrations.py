@@ -18,25 +18,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from centrode.numerics.dormand_prince import FIFTH, STAGES, THIRD, A, B, C
 from centrode.numerics.expressions import Node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.initial_value_problems import (
     BEFORE,
     END,
-    FIFTH,
     HEADER,
     OF_FIFTH,
     OF_THIRD,
     SIZE,
     SMALLEST,
-    STAGES,
     STEP,
     TAKEN,
-    THIRD,
     TIME,
-    A,
-    B,
-    C,
     InitialValueProblem,
 )
 from centrode.numerics.machine_code.compile import Loaded, in_haste, standing

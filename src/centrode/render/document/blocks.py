@@ -329,12 +329,12 @@ class DescriptionText:
     Attributes
     ----------
     text : of the description (TOML)
-    subject : "mechanism" or "cam"
+    subject : "mechanism", "cam", "gear pair" or "gear train"
     instants : values of the drive that are shown [rad or m; s with several drives]
     """
 
     text: str
-    subject: Literal["mechanism", "cam"]
+    subject: Literal["mechanism", "cam", "gear pair", "gear train"]
     instants: tuple[float, ...] = ()
 
 

@@ -238,7 +238,8 @@ def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> 
         for name, curve in zip(names, panel.curves, strict=True)
         if curve.slopes is not None
     }
-    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend, slopes)
+    areas = [PrintSpelling(spelling.display).text(band.name) for band in panel.bands]
+    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend, slopes, areas)
 
 
 def _pen(curve: Curve) -> Pen:

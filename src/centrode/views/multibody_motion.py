@@ -82,6 +82,8 @@ Array: TypeAlias = NDArray[np.float64]
 
 PORTRAIT, PORTRAITS = "simulation-phase-", 6
 """Names of phase portraits begin so; and how many there are at most."""
+MARGIN = 0.04
+"""Share of a phase portrait's width that is left free on either side."""
 SAFETY = 100.0
 """Errors of steps add up, and energies turn over more than once."""
 
@@ -193,6 +195,7 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("energies"), energies_at_end(run))
     yield Fact(Sentence("constraints"), _residuals(run))
     yield from _occasions(run)
+    yield from _regime(results)
     if "worst_imbalance" in run.attrs:
         share = Number(float(run.attrs["worst_imbalance"]), digits=".1e")
         yield Fact(
@@ -203,6 +206,33 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
         )
     if results.second is not None:
         yield Fact(Sentence("reduced equation"), _second_route(results))
+
+
+def _regime(results: SimulationResults) -> Iterator[Fact]:
+    """The regime that the motion runs up to, and what is left of departures from it after a period."""
+    periodic = results.periodic
+    if periodic is None:
+        return
+    period = Number(periodic.period, "s", ".9g")
+    left = Number(float(np.max(np.abs(periodic.multipliers), initial=0.0)), digits=".4g")
+    if periodic.indifferent:
+        text = Sentence("comes back every {period}, and so do neighbouring motions", period=period)
+    elif periodic.stable:
+        text = Sentence(
+            "every {period}, of a departure {share} is left after each", period=period, share=left
+        )
+    else:
+        text = Sentence(
+            "every {period}, unstable: a departure becomes {share} times as great", period=period, share=left
+        )
+    yield Fact(Sentence("steady regime"), text)
+    if periodic.turning is not None:
+        yield Fact(Sentence("mean speed"), Number(periodic.mean_speed, "rad/s", unit_fixed=True))
+    time = results.run_up_time
+    if time is not None:
+        yield Fact(
+            Sentence("run-up"), Sentence("within one hundredth of it after {time}", time=Number(time, "s"))
+        )
 
 
 def _scheme(run: xr.Dataset) -> Text:
@@ -366,10 +396,13 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
         (Curve(Name(name), speeds, number),),
         float(np.max(np.abs(speeds), initial=0.0)),
         legend=False,
+        dots=((Sentence("start"), float(values[0]), float(speeds[0])),),
     )
-    return Plot(
-        Sentence("Phase portrait of {name}", name=Name(name)), title, over_samples(label, values), ((panel,),)
-    )
+    # a curve that turns at its ends would run along the sides of the picture
+    margin = MARGIN * float(np.ptp(values))
+    ends = (float(np.min(values)) - margin, float(np.max(values)) + margin) if margin else None
+    abscissa = replace(over_samples(label, values), ends=ends)
+    return Plot(Sentence("Phase portrait of {name}", name=Name(name)), title, abscissa, ((panel,),))
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:

@@ -20,7 +20,7 @@ from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
-from centrode.dynamics.simulation.equation_of_motion import Driving
+from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
 from centrode.errors import STATUSES_OF_MOTION, InputError, Status
@@ -49,7 +49,7 @@ _reactions = functools.partial(importlib.import_module, "centrode.dynamics.simul
 
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
-HAPPENINGS = ("crossing", "near miss", "doubtful", *KINDS[2:])
+OCCASIONS = ("crossing", "near miss", "doubtful", *KINDS[2:])
 """What may happen on the way: change points, what passes near one, where nothing tells how it goes on; and events."""
 
 
@@ -244,7 +244,7 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory, reactions: 
         **_judgements(setting, course),
         **_contacts(setting, course),
         **_outputs(setting, course),
-        **_happenings(course),
+        **_occasions(course),
     }
     labels = _labels(setting, course)
     attributes = _attributes(setting, course, variables)
@@ -466,11 +466,11 @@ def _outputs(setting: MultibodySetting, course: Trajectory) -> dict[str, Variabl
     return {name: vocabulary_variable(name, ("sample", "controller"), course.outputs)}
 
 
-def _happenings(course: Trajectory) -> dict[str, Variable]:
-    kinds = np.array([HAPPENINGS.index(event.kind) for event in course.events], dtype=np.int8)
+def _occasions(course: Trajectory) -> dict[str, Variable]:
+    kinds = np.array([OCCASIONS.index(event.kind) for event in course.events], dtype=np.int8)
     dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
-    attributes["flag_values"] = np.arange(len(HAPPENINGS), dtype=np.int8)
-    attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in HAPPENINGS)
+    attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
     times = np.array([event.time for event in course.events], dtype=np.float64)
     return {
         "occasion_time": vocabulary_variable("occasion_time", ("occasion",), times),
