@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from centrode.sheets.texts import NOTHING, Text
+
 if TYPE_CHECKING:
     import xarray
 
@@ -22,11 +24,13 @@ class MotionPlayer:
     ----------
     mechanism, motion : whose motion
     by_time : a slider goes through time, whatever the motion is a function of
+    title : what moves so; nothing where the place says it
     """
 
     mechanism: Mechanism
     motion: xarray.Dataset
     by_time: bool = False
+    title: Text = NOTHING
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ KINDS = (FOLD, BRANCH_POINT, HOPF)
 DEGREE = 20
 """Of the polynomial in which numbers of the equations are expanded along the parameter."""
 EXACT = 1e-12
-FIRST, LONGEST, LEAST = 0.01, 0.04, 1e-7
+FIRST, LONGEST, LEAST = 0.01, 0.06, 1e-7
 """Steps along the curve, in rad, greatest lengths, and shares of the range of the number."""
 MOST_STEPS = 1500
 CORRECTED = 1e-12

@@ -186,12 +186,13 @@ def _branches(
     vary: Mapping[str, Sequence[Value]],
     progress: Callable[[float], None] | None,
 ) -> tuple[EquilibriumBranch, ...]:
-    """The branches through the equilibria of the description, and of both ends of the range."""
+    """The branches through the equilibria of the description; with one degree of freedom of both ends too."""
     path, low, high = _range_of(description, vary)
     along = number_range(partial(_with_number, description, held, path), low, high, path)
     here = value_at(description, path)
     seeds = [(here, found.places)] if low <= here <= high else []
-    for value in (low, high):
+    # with more degrees of freedom each search takes long, and there are many branches already
+    for value in (low, high) if found.curve is not None or not seeds else ():
         try:
             seeds.append((value, find_equilibria(_with_number(description, held, path, value)).places))
         except MotionError:
