@@ -114,6 +114,9 @@ def equilibrium(
     """
     description = mechanism_of(mechanism)
     held = held_values(description, hold)
+    if vary is not None:
+        # what is wrong is said before anything is sought
+        _range_of(description, vary)
     loaded = loaded_mechanism(description.with_drives_held(), held)
     found = stable_first(find_equilibria(loaded))
     if progress is not None:
@@ -210,6 +213,8 @@ def _range_of(description: Mechanism, vary: Mapping[str, Sequence[Value]]) -> tu
     ((path, bounds),) = vary.items()
     kind = kind_at(description, path)
     low, high = (read_quantity(one, kind, path) if kind in QUANTITY_KINDS else float(one) for one in bounds)
+    if not low < high:
+        raise InputError(path, _("the range is empty: {low:.6g} to {high:.6g}").format(low=low, high=high))
     return path, low, high
 
 
