@@ -32,11 +32,10 @@ from centrode.cli.main import main
 from centrode.dynamics.simulation.routes import moves_freely
 from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
-from centrode.model.gear_pair_files import gear_pair_text
-from centrode.model.gear_pairs import parse_gear_pair
-from centrode.model.gear_trains import gear_train_text, parse_gear_train
+from centrode.model.gear_pairs import GEAR_PAIRS
+from centrode.model.gear_trains import GEAR_TRAINS
 from centrode.sweeps.sweep import read_sweep
-from centrode.synthesis.requests import parse_synthesis
+from centrode.synthesis.requests import SYNTHESES
 from samples import few
 
 # Matrices here are small, and a worker runs on every core: threads of the linear algebra would only wait for each
@@ -156,16 +155,16 @@ def read_toml(example: Example) -> None:
         read_sweep(named.group(1))
         return
     if "synthesis" in tables:
-        parse_synthesis(text, folder=Path.cwd())
+        SYNTHESES.parse(text, folder=Path.cwd())
         return
     if tables.get("kind") == "gear pair":
-        pair = parse_gear_pair(text)
-        assert parse_gear_pair(gear_pair_text(pair)) == pair
+        pair = GEAR_PAIRS.parse(text)
+        assert GEAR_PAIRS.parse(GEAR_PAIRS.text(pair)) == pair
         ct.gear_pair(pair)
         return
     if tables.get("kind") == "gear train":
-        train = parse_gear_train(text)
-        assert parse_gear_train(gear_train_text(train)) == train
+        train = GEAR_TRAINS.parse(text)
+        assert GEAR_TRAINS.parse(GEAR_TRAINS.text(train)) == train
         ct.gear_train(train)
         return
     if tables.get("kind") == "cam":

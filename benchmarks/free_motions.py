@@ -5,16 +5,20 @@ from __future__ import annotations
 import functools
 import math
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 
 import mujoco
 import numpy as np
+from tools.campaigns.free_motions.references import chain_of_squares, position_of_squares
 
 import centrode as ct
 from benchmarks.table import Promise, Row
-from benchmarks.timing import best_times
+from benchmarks.timing import best_clock_times
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.numerics.machine_code import cache
 
 CRANK, COUPLER, ROCKER, BASE = 0.3, 0.8, 0.6, 0.9
@@ -41,18 +45,32 @@ def four_bar() -> FreeMotion:
     return free_motion_of(mechanism)
 
 
-def squares(loops: int) -> FreeMotion:
-    """IFToMM's chain of squares (A02)."""
-    rod = {"mass": 1.0, "shape": "rod", "length": 1.0}
-    links: dict[str, object] = {}
-    for k in range(loops + 1):
-        links[f"A{k}B{k}"] = {**rod, "points": {f"A{k}": [0, 0], f"B{k}": [1, 0]}, "angle": math.pi / 2}
-    for k in range(loops):
-        links[f"B{k}B{k + 1}"] = {**rod, "points": {f"B{k}": [0, 0], f"B{k + 1}": [1, 0]}, "angle": 0.0}
-    for link in links.values():
-        link.pop("length")  # type: ignore[attr-defined]
-    frame = {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}}
-    return free_motion_of(ct.Mechanism(gravity=[0.0, -9.81], frame=frame, links=links))
+FRESH = """
+import sys, time
+begun = time.perf_counter()
+import xarray
+import centrode as ct
+mechanism = ct.example("double-pendulum")
+loaded = time.perf_counter()
+if sys.argv[1:]:
+    sys.modules["dask"] = None
+ct.simulate(mechanism)
+simulated = time.perf_counter()
+ct.simulate(mechanism)
+print(loaded - begun, simulated - loaded, time.perf_counter() - simulated)
+"""
+
+
+def _fresh_process(*words: str) -> tuple[float, float, float]:
+    """Times [s] of a new process for xarray and a description, for its first simulation, and for the next."""
+    told = [
+        subprocess.run(
+            [sys.executable, "-c", FRESH, *words], capture_output=True, encoding="utf-8", check=True
+        )
+        for _round in range(3)
+    ]
+    loaded, first, again = zip(*(map(float, one.stdout.split()) for one in told), strict=True)
+    return min(loaded), min(first), min(again)
 
 
 def free_motions() -> Iterator[Row]:
@@ -81,7 +99,7 @@ def free_motions() -> Iterator[Row]:
     state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.integration.carried_values(start)])[:, None]
     rows = np.empty((4096, len(free.integration.problem.carried) + 1))
     kernel, numbers = free.integration.integrator(), free.integration.parameters(DURATION, tolerance, rate)
-    times = best_times(
+    times = best_clock_times(
         {
             "steps": functools.partial(kernel.run, numbers, state, 1_000_000, rows),
             "whole": functools.partial(ct.simulate, free.mechanism, settings),
@@ -108,6 +126,17 @@ def free_motions() -> Iterator[Row]:
             Promise("energy error over MuJoCo's", error / theirs, at_most=1.0),
         ],
     )
+    # what a process loads for it: modules of the package, llvmlite, and dask, which xarray imports where it is there
+    for name, words in (("without dask", ("without dask",)), ("with dask", ())):
+        loaded, simulated, again = _fresh_process(*words)
+        yield Row(
+            f"double pendulum in a new process, {name}",
+            {
+                "xarray and description [ms]": 1e3 * loaded,
+                "first simulation [ms]": 1e3 * simulated,
+                "next [ms]": 1e3 * again,
+            },
+        )
     random = np.random.default_rng(1)
     lengths = {
         f"links.{link}.length": length * (1.0 + 0.01 * random.standard_normal(LANES).clip(-2.0, 2.0))
@@ -116,7 +145,7 @@ def free_motions() -> Iterator[Row]:
     settings = ct.Simulation(equations="multibody", speed=SPEED, duration=DURATION, tolerance=1e-6)
     many = functools.partial(ct.simulate, free.mechanism, settings, vary=lengths, threads=2)
     worst = float(many().attrs["worst_energy_residual"])
-    taken = best_times({"many": many}, rounds=5)["many"]
+    taken = best_clock_times({"many": many}, rounds=7)["many"]
     yield Row(
         f"{LANES} four-bars, 10 s, two threads",
         {"[s]": taken, "energy error [J]": worst},
@@ -125,19 +154,33 @@ def free_motions() -> Iterator[Row]:
             Promise("their energy error [J]", worst, at_most=1e-4),
         ],
     )
-    chain = squares(LOOPS)
+    chain = free_motion_of(chain_of_squares(LOOPS))
     upright = chain.initial({"points.B0": (1.0, 0.0)})
     begun = time.perf_counter()
     chain.integration.explicit_steps(upright, 1.0, 1e-12)
     built = time.perf_counter() - begun
-    taken = best_times(
+    taken = best_clock_times(
         {"chain": functools.partial(chain.integration.explicit_steps, upright, 20.0, 1e-12)}, rounds=1
     )["chain"]
+    apart = _distance_from_closed_form(chain, upright)
     yield Row(
         f"A02, {LOOPS} loops, 20 s, 20 change points",
-        {"[s]": taken, "first [s]": built},
-        promises=[Promise(f"A02 with {LOOPS} loops [s]", taken, at_most=2.0)],
+        {"[s]": taken, "first [s]": built, "B0 off [m]": apart},
+        promises=[
+            Promise(f"A02 with {LOOPS} loops [s]", taken, at_most=2.0),
+            Promise(f"position of B0 with {LOOPS} loops over 20 s [m]", apart, at_most=1e-6),
+        ],
     )
+
+
+def _distance_from_closed_form(chain: FreeMotion, upright: InitialState) -> float:
+    """Greatest distance of B0 [m] over 20 s from the rotating pendulum that all uprights are."""
+    instants = np.linspace(0.0, 20.0, 201)
+    course = chain.integrate(upright, 20.0, 1e-12, at=instants)
+    if course.ended != "duration":
+        return math.inf
+    places = course.places[:, chain.points.index("B0")]
+    return float(np.max(np.linalg.norm(places - position_of_squares(LOOPS, instants), axis=1)))
 
 
 def _mujoco(coordinates: np.ndarray, speeds: np.ndarray) -> tuple[float, float]:

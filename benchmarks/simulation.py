@@ -9,7 +9,7 @@ import centrode as ct
 from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times
 from centrode.dynamics.simulation.fixed_steps import fixed_steps
-from centrode.dynamics.simulation.simulate import setting_of
+from centrode.dynamics.simulation.reduced_motion import reduced_setting
 
 STEPS = 10_000
 NAMES = ("spherical-crank-rocker", "spherical-crank-rocker-rigid", "six-bar-press-run-up")
@@ -24,7 +24,7 @@ def simulations() -> Iterator[Row]:
         assert mechanism.simulation is not None
         fixed = {"scheme": "runge-kutta-4", "steps": STEPS, "samples": 1001}
         settings = mechanism.simulation.model_copy(update=fixed)
-        setting = setting_of(mechanism, settings)
+        setting = reduced_setting(mechanism, settings)
         assert settings.duration is not None
         times = best_times(
             {

@@ -37,6 +37,20 @@ def best_times(tasks: Mapping[str, Task], rounds: int = 7, shortest: float = SHO
     return {name: min(times) for name, times in paired_times(tasks, rounds, shortest).items()}
 
 
+def best_clock_times(tasks: Mapping[str, Task], rounds: int = 7) -> dict[str, float]:
+    """Time of one call of each task by the clock [s], the least of several rounds: for tasks of several threads.
+
+    Processor time would add up what their threads take.
+    """
+    for task in tasks.values():
+        task()
+    found = {name: float("inf") for name in tasks}
+    for _round in range(rounds):
+        for name, task in tasks.items():
+            found[name] = min(found[name], _clock(task))
+    return found
+
+
 def ratio(times: Times, one: str, other: str) -> float:
     """Median of the ratios of two tasks, round by round."""
     return median(a / b for a, b in zip(times[one], times[other], strict=True))

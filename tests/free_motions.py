@@ -1,6 +1,6 @@
-"""Mechanisms left to themselves whose motion is known: descriptions, and tables of values by codes that share nothing.
+"""Mechanisms left to themselves whose motion is known: their descriptions, and tables of values.
 
-The tables stand in tests/reference/dynamics; its README says how they were made.
+They stand in tests/reference/dynamics; its README says how they were made.
 """
 
 from __future__ import annotations
@@ -18,193 +18,19 @@ from centrode.model.files import with_values
 TABLES = Path(__file__).parent / "reference" / "dynamics"
 Array = npt.NDArray[np.float64]
 
-DOUBLE_PENDULUM = """\
-gravity = [0, -9.81]
-[frame.points]
-O = [0, 0]
-[links.OA]
-length = 1
-mass = 1
-shape = "rod"
-angle = 0.0
-[links.AB]
-length = 1
-mass = 1
-shape = "rod"
-angle = 0.0
-[simulation]
-duration = 5
-"""
 
-FIVE_BAR = """\
-gravity = [0, -9.81]
-[frame.points]
-A = [0, 0]
-E = [0.6, 0]
-F = [0.3, 0.95]
-[links.AB]
-length = 0.25
-mass = 0.25
-shape = "rod"
-[links.BC]
-length = 0.5
-mass = 0.5
-shape = "rod"
-[links.DC]
-length = 0.45
-mass = 0.45
-shape = "rod"
-[links.ED]
-length = 0.3
-mass = 0.3
-shape = "rod"
-[[drives]]
-link = "AB"
-start = 2.0
-[[drives]]
-link = "ED"
-start = 0.7
-[assembly]
-sides = { C = "left" }
-[[loads]]
-kind = "spring"
-points = ["C", "F"]
-stiffness = 40
-free_length = 0.3
-[simulation]
-duration = 5
-"""
+def description(name: str) -> str:
+    """The text of a mechanism that is left to itself."""
+    return (TABLES / f"{name}.toml").read_text(encoding="utf-8")
 
-FOUR_BAR = """\
-gravity = [0, -9.81]
-[frame.points]
-A = [0, 0]
-D = [0.9, 0]
-[links.AB]
-length = 0.3
-mass = 0.3
-shape = "rod"
-[links.BC]
-length = 0.8
-mass = 0.8
-shape = "rod"
-[links.DC]
-length = 0.6
-mass = 0.6
-shape = "rod"
-[[drives]]
-link = "AB"
-start = "60 deg"
-[assembly]
-sides = { C = "left" }
-[[loads]]
-kind = "torque"
-link = "AB"
-value = 0.1
-[simulation]
-speed = 10
-duration = 10
-"""
 
-DOUBLE_ROCKER = """\
-gravity = [0, -9.81]
-[frame.points]
-A = [0, 0]
-D = [1, 0]
-[links.AB]
-length = 0.6
-mass = 0.6
-shape = "rod"
-[links.BC]
-length = 0.5
-mass = 0.5
-shape = "rod"
-[links.DC]
-length = 0.6
-mass = 0.6
-shape = "rod"
-[[drives]]
-link = "AB"
-start = 1.2
-[assembly]
-sides = { C = "left" }
-[simulation]
-duration = 5
-"""
-
-CHANGE_POINTS = """\
-gravity = [0, -9.81]
-[frame.points]
-A = [0, 0]
-D = [0.6, 0]
-[links.AB]
-length = 0.3
-mass = 0.3
-shape = "rod"
-[links.BC]
-length = 0.8
-mass = 0.8
-shape = "rod"
-[links.DC]
-length = 0.5
-mass = 0.5
-shape = "rod"
-[[drives]]
-link = "AB"
-start = 1.0
-speed = 1
-[assembly]
-sides = { C = "left" }
-[simulation]
-equations = "multibody"
-speed = 6.0
-duration = 3.0
-"""
-
-SPHERICAL_FOUR_BAR = """\
-space = "sphere"
-gravity = [0, 0, -9.81]
-[frame.points]
-A = [1, 0, 0]
-D = [0, 1, 0]
-Z = [0, 0, 1]
-[links.AB]
-length = 0.3
-reference = ["A", "D"]
-mass = 0.5
-shape = "arc"
-[links.BC]
-length = 0.9
-mass = 0.8
-shape = "arc"
-[links.DC]
-length = 1.2
-reference = ["D", "Z"]
-mass = 1.1
-shape = "arc"
-[[drives]]
-link = "AB"
-start = 0.5
-[assembly]
-sides = { C = "left" }
-[simulation]
-speed = 8.0
-duration = 2.0
-"""
-
-PENDULUM = """\
-gravity = [0, -9.81]
-[frame.points]
-O = [0, 0]
-[links.OA]
-length = 1
-mass = 1
-centre = "A"
-inertia = 0
-angle = "180 deg"
-[simulation]
-duration = 10
-"""
+DOUBLE_PENDULUM = description("double-pendulum")
+FIVE_BAR = description("five-bar")
+FOUR_BAR = description("four-bar-reactions")
+DOUBLE_ROCKER = description("through-limits")
+CHANGE_POINTS = description("change-points")
+SPHERICAL_FOUR_BAR = description("spherical-four-bar-free")
+PENDULUM = description("pendulum")
 """IFToMM's A01: a mass in one point on a massless bar, left from the horizontal."""
 
 

@@ -20,6 +20,7 @@ from .model.cam_files import read_cam as read_cam
 from .model.cam_files import parse_cam as parse_cam
 from .model.cam_files import cam_text as cam_text
 from .model.pmks import from_pmks as from_pmks
+from .sketches.imported_sketch import import_sketch as import_sketch
 from .model.files import value_at as value_at
 from .model.files import with_value as with_value
 

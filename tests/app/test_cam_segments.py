@@ -143,3 +143,55 @@ def test_what_is_no_segment_is_refused(operation):
     with pytest.raises(InputError):
         apply_operation(patch, operation)
     assert patch.text == INDEXING
+
+
+FOLLOWERS = {
+    "flat": VALVE,
+    "swinging": INDEXING,
+    "clockwise": INDEXING.replace('turn = "counter-clockwise"', 'turn = "clockwise"'),
+    "knife": VALVE.replace('contact = "flat"', 'contact = "knife"\noffset = "4 mm"'),
+    "roller": VALVE.replace(
+        'contact = "flat"', 'contact = "roller"\nroller_radius = "8 mm"\noffset = "4 mm"'
+    ),
+}
+
+
+@pytest.mark.parametrize("text", FOLLOWERS.values(), ids=FOLLOWERS)
+def test_the_follower_rests_on_the_cam_of_the_picture(text):
+    """Turned by the angle of its sample, the profile touches roller, edge or face, and crosses none of them."""
+    document = read_document(text, HERE)
+    scene = cam_scene(document)["cam"]
+    follower, profile = scene["follower"], np.array(scene["profile"])
+    size = np.abs(profile).max()
+    for sample in range(0, 361, 24):
+        turn = follower["sense"] * math.radians(sample)
+        cosine, sine = math.cos(turn), math.sin(turn)
+        turned = profile @ np.array([[cosine, sine], [-sine, cosine]])
+        if follower["faces"] is not None:
+            (x, y), (u, v) = np.array(follower["faces"][sample]).reshape(-1, 2)[:2]
+            assert y == v  # the face of a stem lies level, and the cam is below it
+            inside = turned[(turned[:, 0] > x) & (turned[:, 0] < u)]
+            assert inside[:, 1].max() == pytest.approx(y, abs=3e-4 * size)
+            assert turned[:, 1].max() < y + 1e-5 * size
+        else:
+            place = np.array(follower["places"][sample])
+            apart = np.linalg.norm(turned - place, axis=1).min()
+            assert apart == pytest.approx(scene["roller"] or 0.0, abs=8e-3 * size)
+        if follower["pivot"] is not None:
+            arm = math.dist(follower["places"][sample], follower["pivot"])
+            assert arm == pytest.approx(0.09, abs=1e-6)
+
+
+def test_a_roller_is_led_around_a_cam_that_stands(ask):
+    scene = ask("read", text=example_text("walking-wheel-four-legs"))["scene"]
+    cam = scene["cam"]
+    assert cam["follower"] is None and len(cam["carrier"]) == len(cam["pitch"])
+    angles = np.unwrap(np.arctan2(*np.array(cam["pitch"]).T))
+    assert np.abs(angles - angles[0]) == pytest.approx(
+        np.abs(np.array(cam["carrier"]) - cam["carrier"][0]), abs=1e-4
+    )
+    profile = np.array(cam["profile"])
+    for place in np.array(cam["pitch"])[::40]:
+        assert np.linalg.norm(profile - place, axis=1).min() == pytest.approx(cam["roller"], abs=2e-4)
+    names = [one["name"] for one in scene["dimensions"]]
+    assert len(names) == len(set(names))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.app import drive_space
 from centrode.app.documents import read_document
 from centrode.app.drive_space import has_free_place, initial_values, place_in_drive_space, position_at
 from centrode.app.frames import read_frame
@@ -23,8 +24,15 @@ HERE = Path()
 SEVERAL = ["five-bar-two-drives", "excavator-arm", "two-link-arm", "five-bar-pendulum", "double-pendulum"]
 
 
+HIGHER = ["fourth-class-group", "third-class-triad", "stephenson-driven-at-rocker", "scissor-lift-cylinder"]
+"""One drive, and a group of higher class behind it."""
+GEARED = ["geared-five-bar", "planetary-hypocycloid", "rolling-wheel-rod", "bevel-pair"]
+"""One drive, and turns that gears or rolling wheels count."""
+
+
 def without_laws(name):
-    return re.sub(r"(?m)^(?:speed|law) = .*\n", "", example_text(name))
+    """A built-in description whose drives nothing moves; a range of the drive is none without it."""
+    return re.sub(r"(?m)^(?:speed|law|from|to) = .*\n", "", example_text(name))
 
 
 def positions_along(text, point, *places):
@@ -71,16 +79,16 @@ def test_three_drives_move_least():
     assert change == pytest.approx(least, rel=2e-3)
 
 
-@pytest.mark.parametrize("name", SEVERAL)
+@pytest.mark.parametrize("name", [*SEVERAL, *HIGHER, *GEARED])
 def test_derivatives_by_the_drives_are_those_of_the_positions(name):
     """Central differences; what is dropped stands there in the motion of the file that is written."""
-    text = example_text(name)
+    text = example_text(name) if name in SEVERAL else without_laws(name)
     prepared = read_document(text, HERE).position
     begin = position_at(prepared, initial_values(prepared))
     step = 1e-5
     for k, drive in enumerate(begin.values):
         ends = [
-            position_at(prepared, {**begin.values, drive: begin.values[drive] + sign * step})
+            position_at(prepared, {**begin.values, drive: begin.values[drive] + sign * step}, begin.positions)
             for sign in (1, -1)
         ]
         for point in begin.points:
@@ -92,10 +100,56 @@ def test_derivatives_by_the_drives_are_those_of_the_positions(name):
     there = place_in_drive_space(prepared, point, begin.points[point] + 0.03 * size, begin.values)
     patch = Patch(text, HERE)
     apply_operation(patch, {"do": "set_starts", "drives": there.values})
-    mechanism = ct.parse_mechanism(patch.text)
-    start = ct.motion(mechanism, at=[0.0]).position.isel(sample=0)
+    start = read_document(patch.text, HERE).position.assembled.positions.points
     for name_of_point, place in there.points.items():
-        assert start.sel(point=name_of_point).values == pytest.approx(place, abs=2e-4 * size)
+        assert list(map(float, start[name_of_point])) == pytest.approx(place, abs=2e-4 * size)
+
+
+@pytest.mark.parametrize("name", [*HIGHER, *GEARED])
+def test_a_hand_leads_along_the_motion_of_the_drive(name):
+    """A hand that goes where the crank's pin goes: the drive's value and all other points are those of the motion,
+    which is followed by another route; with the last positions forgotten the way from the start gives them again."""
+    text = without_laws(name)
+    prepared, motion = (
+        read_document(text, HERE).position,
+        ct.motion(ct.parse_mechanism(example_text(name)), 73),
+    )
+    point, begin = prepared.mechanism.moving_points[0], initial_values(prepared)
+    (drive,) = begin
+    values = motion.drive_value.sel(drive=drive).values if "drive" in motion.drive_value.dims else None
+    values = motion.drive_value.values if values is None else values
+    first = int(np.argmin(abs(values - begin[drive])))
+    size = Sketch(read_document(text, HERE)).size
+    present, seen = begin, 0
+    for k in range(first + 1, min(first + 13, len(values))):
+        if int(motion.status[k]) != 0:
+            break
+        goal = motion.position.isel(sample=k).sel(point=point).values
+        found = place_in_drive_space(prepared, point, goal, present)
+        if abs(found.values[drive] - values[k]) > 1e-6 * max(1.0, abs(values[k])):
+            assert np.linalg.norm(found.points[point] - goal) < 1e-6 * size  # it passes there twice
+            break
+        for other, place in found.points.items():
+            assert place == pytest.approx(
+                motion.position.isel(sample=k).sel(point=other).values, abs=1e-7 * size
+            )
+        present, seen = found.values, seen + 1
+    assert seen >= 3
+    again = position_at(prepared, present)
+    drive_space._KEPT.clear()
+    anew = position_at(prepared, present)
+    for other, place in anew.points.items():
+        assert place == pytest.approx(again.points[other], abs=1e-9 * size)
+
+
+def test_a_rack_that_its_line_places_is_not_dropped_elsewhere():
+    text = without_laws("rack-and-pinion")
+    prepared = read_document(text, HERE).position
+    begin = position_at(prepared, initial_values(prepared))
+    there = place_in_drive_space(prepared, "H", begin.points["H"] + np.array([0.01, 0.0]), begin.values)
+    assert there.values["pinion"] == pytest.approx(0.5, abs=1e-9)  # 10 mm over a pitch radius of 20 mm
+    with pytest.raises(InputError, match="where this begins"):
+        apply_operation(Patch(text, HERE), {"do": "set_starts", "drives": there.values})
 
 
 def test_a_drive_without_a_law_is_moved_by_hand_and_simulated(ask):

@@ -15,7 +15,16 @@ from centrode.app.words import WORDS
 
 APP = Path(__file__).parents[2] / "src" / "centrode" / "app"
 FRONT, STATIC = APP / "front", APP / "static"
-NAMES = ("index.html", "app.js", "app.css", "editor.js", "licences.txt")
+NAMES = (
+    "index.html",
+    "app.js",
+    "app.css",
+    "editor.js",
+    "licences.txt",
+    "gears.html",
+    "gears.js",
+    "gears.css",
+)
 MOST = {"app.js": 120_000, "editor.js": 150_000}
 """Bytes that a browser loads, compressed."""
 SAID = re.compile(r'\bsay\(\s*"([a-z_]+)"|\bsay\([^()]*? \? "([a-z_]+)" : "([a-z_]+)"\)|"(keys_[a-z]+)"')

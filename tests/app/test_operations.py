@@ -161,7 +161,7 @@ def test_duplicates_stand_beside():
     sketch = Sketch(patch.document)
     copies = [name for name in patch.named if name in sketch.points]
     assert [sketch.places[name] for name in copies] == [(0, -2), (1, -1.5)]
-    assert copies[0] in sketch.fixed
+    assert copies[0] in sketch.frame_points
 
 
 @pytest.mark.parametrize(
@@ -174,13 +174,13 @@ def test_copies_of_links_with_lengths_hang_on_a_point_of_the_frame(name, link):
     chosen = (
         [link]
         if link
-        else [one for one, points in before.links.items() if not set(points) & set(before.fixed)]
+        else [one for one, points in before.links.items() if not set(points) & set(before.frame_points)]
     )
     patch = patch_of(text, {"do": "duplicate", "objects": chosen, "by": [0.3, -0.2]})
     after = Sketch(patch.document)
     originals = list(dict.fromkeys(point for one in chosen for point in before.links[one]))
     copies = [one for one in patch.named if one in after.points]
-    assert len(copies) == len(originals) and set(copies) & set(after.fixed)
+    assert len(copies) == len(originals) and set(copies) & set(after.frame_points)
     for old, new in zip(originals, copies, strict=True):
         x, y = before.places[old]
         assert after.places[new] == pytest.approx((x + 0.3, y - 0.2), abs=2e-4 * before.size)

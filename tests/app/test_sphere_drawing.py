@@ -11,6 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.app.documents import read_document
+from centrode.app.frames import read_frame
 from centrode.app.operations import apply_operation
 from centrode.app.patches import Patch
 from centrode.app.sketch import Sketch
@@ -153,22 +154,100 @@ def test_an_unfinished_drawing_stands_where_it_was_drawn(ask):
     assert not ask("read", text=example_text("spherical-four-bar"))["scene"]["draws"]
 
 
+def distances(places, names):
+    """Arcs between all pairs of points."""
+    return [arc(places[a], places[b]) for k, a in enumerate(names) for b in names[:k]]
+
+
+def test_a_copy_stands_beside_and_is_as_great():
+    patch = patch_of(FOUR_BAR, {"do": "duplicate", "objects": ["BC", "CD"], "about": [0, 0, 1], "angle": 0.2})
+    copies = patch.named[:3]
+    assert copies == ["E", "F", "G"]
+    places = {**places_in_motion(FOUR_BAR)}
+    text = tomllib.loads(patch.text)
+    assert text["frame"]["points"] == ["A", "D", "G"]  # D is at rest, its copy too
+    sketch = Sketch(read_document(patch.text, HERE))
+    assert distances(sketch.places, copies) == pytest.approx(distances(places, ["B", "C", "D"]), abs=4e-6)
+    turn = np.array([[math.cos(0.2), -math.sin(0.2), 0], [math.sin(0.2), math.cos(0.2), 0], [0, 0, 1]])
+    for copy, name in zip(copies, "BCD", strict=True):
+        assert sketch.places[copy] == pytest.approx(turn @ np.array(places[name]), abs=2e-6)
+    beside = patch_of(FOUR_BAR, {"do": "duplicate", "objects": ["C"]})
+    place = Sketch(read_document(beside.text, HERE)).places[beside.named[0]]
+    assert arc(place, at(60, 45)) == pytest.approx(math.pi / 12, abs=4e-6)
+
+
+@pytest.mark.parametrize(
+    ("axis", "pole"), [([at(0, 0), at(90, 0)], [0, 0, 1]), ([at(0, 0), at(0, 90)], [0, 1, 0])]
+)
+def test_a_mirror_image_in_a_great_circle(axis, pole):
+    """Of the equator latitudes change their sign, of the meridian through x longitudes."""
+    patch = patch_of(FOUR_BAR, {"do": "mirror", "objects": ["AB", "BC", "CD"], "axis": axis})
+    before, after = places_in_motion(FOUR_BAR), places_in_motion(patch.text)
+    for name, place in before.items():
+        image = np.array(place) - 2 * np.dot(place, pole) * np.array(pole)
+        assert after[name] == pytest.approx(image, abs=2e-6)
+    upright = patch_of(FOUR_BAR, {"do": "mirror", "objects": ["B", "C"], "axis": "y"})
+    swapped = places_in_motion(upright.text)
+    assert arc(swapped["B"], swapped["C"]) == pytest.approx(arc(at(0, 30), at(60, 45)), abs=4e-6)
+
+
+def test_two_joints_become_one():
+    """The rod that was drawn apart ends at the joint it is dropped on."""
+    rod = {"do": "add_link", "at": at(60, 45), "to": at(70, 60), "from_point": "C"}
+    joined = patch_of(FOUR_BAR, rod, {"do": "join", "points": ["E", "B"]})
+    tables = tomllib.loads(joined.text)
+    assert "E" not in tables["points"] and tables["links"]["CE"]["points"] == ["C", "B"]
+    assert places_in_motion(joined.text)["B"] == pytest.approx(at(0, 30), abs=1e-6)
+
+
+SPHERICAL = ["spherical-four-bar", "spherical-crank-rocker-rigid", "spherical-crank-rocker-touching"]
+
+
+@pytest.mark.parametrize("name", SPHERICAL)
+def test_arcs_and_angles_follow_a_dragged_joint(name, ask):
+    """Every joint stands where it is put and the others where they stood, in the motion of the file that is written."""
+    text = example_text(name)
+    before = places_in_motion(text)
+    random = np.random.default_rng(28)
+    for point in before:
+        goal = before[point] + 0.1 * random.standard_normal(3)
+        goal /= np.linalg.norm(goal)
+        patch = patch_of(text, {"do": "move_point", "point": point, "to": list(goal)})
+        after = places_in_motion(patch.text)
+        for other, place in before.items():
+            expected = goal if other == point else place
+            assert after[other] == pytest.approx(expected, abs=4e-6), (point, other)
+    frame = ask("drag", text=text, mode="edit", point="B", to=list(at(3, 16)))
+    header, _arrays = read_frame(frame)
+    assert header["values"]["links.AB.length"] == pytest.approx(arc(at(3, 16), before["A"]), abs=1e-6)
+    scene = ask("read", text=text)["scene"]
+    assert all(point["handles"]["edit"] for point in scene["points"])
+
+
+def test_a_locked_arc_holds_its_joint():
+    text = patch_of(
+        example_text("spherical-four-bar"), {"do": "lock", "path": "links.BC.length", "on": True}
+    ).text
+    after = places_in_motion(patch_of(text, {"do": "move_point", "point": "C", "to": at(10, 50)}).text)
+    assert arc(after["B"], after["C"]) == pytest.approx(math.pi / 4, abs=4e-6)
+
+
 REFUSALS = [
     (FOUR_BAR, {"do": "add_link", "at": [0, 1], "to": at(1, 1)}, "three numbers"),
     (FOUR_BAR, {"do": "add_link", "at": [0, 0, 0], "to": at(1, 1)}, "centre"),
     (FOUR_BAR, {"do": "add_guide", "at": at(60, 45), "to": at(60, 45), "point": "C"}, "too short"),
     (FOUR_BAR, {"do": "move_point", "point": "C", "to": at(0, 30)}, "coincide"),
-    (FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "by": [0, 1]}, "changed in the text"),
+    (FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "about": [0, 1]}, "three numbers"),
+    (FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "angle": "x"}, "number"),
+    (FOUR_BAR, {"do": "mirror", "objects": ["C"], "axis": [at(0, 10), at(0, 10)]}, "axis"),
+    (FOUR_BAR, {"do": "join", "points": ["A", "B"]}, "both belong"),
+    (example_text("spherical-four-bar"), {"do": "duplicate", "objects": ["AB"]}, "arcs and angles"),
     (
         example_text("spherical-four-bar"),
         {"do": "add_link", "at": at(0, 0), "to": at(1, 1)},
         "arcs and angles",
     ),
-    (
-        example_text("spherical-four-bar"),
-        {"do": "move_point", "point": "C", "to": at(0, 1)},
-        "arcs and angles",
-    ),
+    (example_text("spherical-four-bar"), {"do": "move_point", "point": "B", "to": [1, 0, 0]}, "coincide"),
 ]
 
 

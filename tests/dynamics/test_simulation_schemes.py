@@ -10,7 +10,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.simulation.fixed_steps import StepSlopes
-from centrode.dynamics.simulation.simulate import setting_of
+from centrode.dynamics.simulation.reduced_motion import reduced_setting
 from centrode.dynamics.simulation.steady_state import steady_regime
 from centrode.numerics.machine_code import PRESENT
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
@@ -51,7 +51,7 @@ def test_fixed_steps_are_of_order_four(name: str) -> None:
 @pytest.mark.parametrize("mechanism", [crank_rocker(SMOOTH), spherical(0.3, 0.8), pendulum()])
 def test_right_sides_of_steps_are_those_of_the_field(mechanism: ct.Mechanism) -> None:
     """Series by Horner's rule in plain numbers, and by arrays: the same forces at the same states."""
-    setting = setting_of(mechanism, ct.Simulation(driving="2 - 0.2*v + q", speed=3, duration=1))
+    setting = reduced_setting(mechanism, ct.Simulation(driving="2 - 0.2*v + q", speed=3, duration=1))
     field, slopes = setting.field, StepSlopes(setting.field)
     random = np.random.default_rng(5)
     for value, rate, t in random.uniform((-3.0, -4.0, 0.0), (3.0, 4.0, 2.0), (200, 3)).tolist():

@@ -23,7 +23,7 @@ from centrode.gears.planetary_trains import (
     pair_works,
 )
 from centrode.gears.train_search import TrainBounds, find_trains
-from centrode.model.gear_trains import gear_train_text, parse_gear_train
+from centrode.model.gear_trains import GEAR_TRAINS
 
 LEAST = 17
 MOST = {"single planets": 84, "stepped planets": 56, "external meshes": 42, "internal meshes": 56}
@@ -253,8 +253,8 @@ def _link_of(member: str, scheme: str) -> str:
 @pytest.mark.parametrize("name", TRAINS)
 def test_the_mechanism_of_a_train_moves_as_its_plan_says(name: str) -> None:
     """Angular velocities of `run` against those of the plan; contacts and axes have the velocities of the triangles."""
-    described = parse_gear_train(f'kind = "gear train"\nmodule = "2 mm"\n{TRAINS[name]}')
-    assert parse_gear_train(gear_train_text(described)) == described
+    described = GEAR_TRAINS.parse(f'kind = "gear train"\nmodule = "2 mm"\n{TRAINS[name]}')
+    assert GEAR_TRAINS.parse(GEAR_TRAINS.text(described)) == described
     results = ct.gear_train(described)
     mechanism = ct.train_mechanism(results)
     motion = ct.motion(mechanism, samples=5)
@@ -300,26 +300,28 @@ def test_contacts_have_one_velocity() -> None:
 )
 def test_bad_descriptions_say_where_and_what_helps(keys: str, said: str) -> None:
     with pytest.raises(InputError) as refusal:
-        parse_gear_train(f'kind = "gear train"\nmodule = "2 mm"\n{keys}', "train.toml")
+        GEAR_TRAINS.parse(f'kind = "gear train"\nmodule = "2 mm"\n{keys}', "train.toml")
     assert said in str(refusal.value)
     assert "train.toml" in str(refusal.value)
 
 
 def test_a_ratio_that_no_train_has_names_the_nearest() -> None:
-    described = parse_gear_train(
+    described = GEAR_TRAINS.parse(
         'kind = "gear train"\nmodule = "2 mm"\nscheme = "single planets"\nratio = 20\n'
     )
     with pytest.raises(MotionError) as refusal:
         ct.gear_train(described)
     assert "the nearest is" in str(refusal.value)
     with pytest.raises(InputError, match="there are"):
-        ct.gear_train(parse_gear_train(gear_train_text(described).replace("20.0", "5.4") + "chosen = 999\n"))
+        ct.gear_train(
+            GEAR_TRAINS.parse(GEAR_TRAINS.text(described).replace("20.0", "5.4") + "chosen = 999\n")
+        )
 
 
 @pytest.mark.parametrize("name", ct.example_names("gear train"))
 def test_built_in_trains(name: str) -> None:
     described = ct.example(name)
-    assert parse_gear_train(gear_train_text(described)) == described
+    assert GEAR_TRAINS.parse(GEAR_TRAINS.text(described)) == described
     results = ct.gear_train(name)
     assert "nan" not in ct.summary(results)
     assert 0 < results.efficiency(results.chosen) < 1

@@ -12,9 +12,9 @@ from tools.campaigns.gears.turned_teeth import external_tooth
 import centrode as ct
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.racks import rack_positions, rack_tooth
-from centrode.model.gear_pairs import parse_gear_pair
+from centrode.model.gear_pairs import GEAR_PAIRS
 from centrode.report.drawing_sheets import drawing_sheets
-from centrode.sheets.drawing_sheets import CamSheet
+from centrode.sheets.drawing_sheets import ProfileSheet
 from centrode.views.gear_pair import generation_parts
 from centrode.views.gear_sheets import gear_sheet
 
@@ -46,7 +46,7 @@ def test_the_sheet_of_a_pair(name: str) -> None:
     assert all(np.isfinite(diagram.curves[0].up).all() for diagram in sheet.diagrams)
     made = drawing_sheets(ct.example(name))
     assert len(made.sheets) == 1
-    assert isinstance(made.sheets[0], CamSheet)
+    assert isinstance(made.sheets[0], ProfileSheet)
     teeth, positions = generation_parts(results)
     assert len(positions) > 10
     assert len(teeth) == 16
@@ -57,7 +57,7 @@ def test_undercut_is_seen_in_the_generation() -> None:
     crossing = []
     for shift in (0.0, 0.6):
         text = f'kind = "gear pair"\nmodule = 1\nteeth = [8, 40]\nshifts = [{shift}, 0.5]\n'
-        results = ct.gear_pair(parse_gear_pair(text))
+        results = ct.gear_pair(GEAR_PAIRS.parse(text))
         wheel = results.geometry.wheels[0]
         outline = rack_tooth(results.geometry.transverse, shift)
         rolled = np.linspace(-1.5, 1.5, 601) * 2 * math.pi / 8

@@ -10,7 +10,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.gear_trains import parse_gear_train
+from centrode.model.gear_trains import GEAR_TRAINS
 
 TRAIN = """kind = "gear train"
 scheme = "single planets"
@@ -24,7 +24,7 @@ tolerance = 0.001
 
 @pytest.fixture(scope="module")
 def results() -> Any:
-    return ct.gear_train(parse_gear_train(TRAIN))
+    return ct.gear_train(GEAR_TRAINS.parse(TRAIN))
 
 
 def test_speeds_inertia_and_reactions_close(results: Any) -> None:
@@ -67,9 +67,54 @@ def test_reactions_of_the_press_are_those_without_the_train(results: Any) -> Non
     assert np.allclose(np.abs(moments[0]), np.abs(teeth[:, 1]) * 68 * 0.003, rtol=1e-9)
 
 
+def test_the_machine_is_kept_and_its_flywheel_reduces_to_the_motor(results: Any) -> None:
+    """Mean speed by the ratio, inertia by its inverse square; a cycle is twenty turns of the motor."""
+    press = ct.example("six-bar-press")
+    whole = ct.train_mechanism(results, press)
+    assert whole.machine is not None
+    assert whole.machine.mean_speed == pytest.approx(1300 * math.pi / 30, rel=1e-12)
+    # The machine alone has a crank that turns at the same mean speed.
+    alone, driven = ct.flywheel(press), ct.flywheel(whole)
+    assert driven.turns == 20 * alone.turns
+    assert driven.inertia is not None
+    assert alone.inertia is not None
+    assert driven.inertia * 400 == pytest.approx(alone.inertia, rel=1e-9)
+    # The flywheel stays on the shaft of the crank.
+    assert driven.added == pytest.approx(alone.added, rel=1e-9)
+    for name in ("obtained", "time_of_cycle", "fluctuation"):
+        assert getattr(driven, name) == pytest.approx(getattr(alone, name), rel=1e-9), name
+    assert driven.greatest_speed == pytest.approx(20 * alone.greatest_speed, rel=1e-9)
+
+
+def test_loads_by_the_angle_of_the_crank_are_those_of_the_motor(results: Any) -> None:
+    text = ct.mechanism_text(ct.example("six-bar-press")).replace(
+        "vector = [-9000.0, 0.0]", 'vector = ["-9000*(1 + 0.3*cos(q))", 0.0]'
+    )
+    press = ct.parse_mechanism(text)
+    whole = ct.train_mechanism(results, press)
+    first, second = (
+        ct.reduce(mechanism, samples=25).reduced_moment.to_numpy() for mechanism in (press, whole)
+    )
+    assert np.abs(first).max() > 100
+    ratio = results.whole_ratio(results.chosen)
+    assert np.allclose(second * ratio, first, rtol=1e-9, atol=1e-9 * np.abs(first).max())
+    by_table = text.replace(
+        "[[guides]]",
+        '[[loads]]\nkind = "torque"\nlink = "CD"\ntable = [["0 deg", 0], ["355 deg", 3]]\n\n[[guides]]',
+        1,
+    )
+    with pytest.raises(InputError, match="table over the angle of its crank"):
+        ct.train_mechanism(results, ct.parse_mechanism(by_table))
+
+
+def test_a_machine_whose_motor_never_returns_with_its_crank_is_omitted() -> None:
+    train = ct.gear_train(GEAR_TRAINS.parse(TRAIN.replace("[17, 68]", "[17, 67]").replace("0.001", "0.02")))
+    assert ct.train_mechanism(train, "six-bar-press").machine is None
+
+
 def test_machines_that_no_train_can_drive(results: Any) -> None:
     bare = ct.gear_train(
-        parse_gear_train('kind = "gear train"\nscheme = "one pair"\nratio = 3\nmodule = 0.002\n')
+        GEAR_TRAINS.parse('kind = "gear train"\nscheme = "one pair"\nratio = 3\nmodule = 0.002\n')
     )
     with pytest.raises(InputError, match="no pair behind"):
         ct.train_mechanism(bare, "six-bar-press")

@@ -12,8 +12,7 @@ from centrode.errors import InputError, MotionError
 from centrode.gears.blocking_contour import BLOCKING, CURVES, blocking_contour, margins_of, with_shifts
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.shift_choice import chosen_shifts, shift_sum_at
-from centrode.model.gear_pair_files import gear_pair_text
-from centrode.model.gear_pairs import PURPOSES, parse_gear_pair
+from centrode.model.gear_pairs import GEAR_PAIRS, PURPOSES
 from centrode.views import gear_pair as gear_pair_view
 
 PAIR = PairGeometry("external", 3.0, (12, 24), (0.0, 0.0))
@@ -94,7 +93,7 @@ def test_margins_vanish_on_the_curves_of_the_contour_and_change_their_sign_there
 @pytest.mark.parametrize("name", ct.example_names("gear pair"))
 def test_descriptions_are_read_back_exactly_and_compute(name: str) -> None:
     described = ct.example(name)
-    assert parse_gear_pair(gear_pair_text(described)) == described
+    assert GEAR_PAIRS.parse(GEAR_PAIRS.text(described)) == described
     results = ct.gear_pair(name)
     assert results.geometry.contact_ratio > 1
     assert "nan" not in ct.summary(results)
@@ -137,18 +136,18 @@ def pair_text(**keys: object) -> str:
 )
 def test_bad_descriptions_say_where_and_what_helps(keys: dict[str, object], said: str) -> None:
     with pytest.raises(InputError) as refusal:
-        parse_gear_pair(pair_text(**keys), "pair.toml")
+        GEAR_PAIRS.parse(pair_text(**keys), "pair.toml")
     assert said in str(refusal.value)
     assert "pair.toml" in str(refusal.value)
 
 
 def test_pairs_that_cannot_be() -> None:
     with pytest.raises(InputError, match="the flanks do not touch"):
-        ct.gear_pair(parse_gear_pair(pair_text(shifts=None, centre_distance='"50 mm"')))
+        ct.gear_pair(GEAR_PAIRS.parse(pair_text(shifts=None, centre_distance='"50 mm"')))
     with pytest.raises(MotionError, match="cannot mesh"):
-        ct.gear_pair(parse_gear_pair(pair_text(shifts="[-2, -1]")))
+        ct.gear_pair(GEAR_PAIRS.parse(pair_text(shifts="[-2, -1]")))
     with pytest.raises(MotionError, match="no shifts"):
-        ct.gear_pair(parse_gear_pair(pair_text(teeth="[5, 5]", shifts='"least sliding"')))
+        ct.gear_pair(GEAR_PAIRS.parse(pair_text(teeth="[5, 5]", shifts='"least sliding"')))
 
 
 def test_every_purpose_has_a_word_of_the_view() -> None:

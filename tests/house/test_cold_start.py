@@ -80,6 +80,20 @@ import dask.array
     assert json.loads(done.stderr.splitlines()[-1]) == [0, False, False, True]
 
 
+def test_a_free_motion_imports_no_scipy() -> None:
+    """Its right side is a function of its own: SciPy takes longer to load than the motion takes."""
+    text = """
+import sys
+import centrode as ct
+from centrode.optional_packages import held_back
+with held_back("dask"):
+    ct.simulate(ct.example("double-pendulum"))
+print(*sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, encoding="utf-8", check=True)
+    assert not {module.split(".")[0] for module in done.stdout.split()} & {"scipy", "matplotlib", "sympy"}
+
+
 def test_a_library_that_is_held_back_is_let_in_again() -> None:
     text = """
 import sys

@@ -186,7 +186,7 @@ def test_a_cam_that_is_not_that_of_the_motion_is_not_drawn(read):
         (SLIDE, LIFT, '"cam.toml"', '"valve-cm"', 'did you mean "valve-cam"?'),
         (SLIDE, LIFT, '"cam.toml"', "3", "expected the name of a cam's file"),
         (SLIDE, LIFT, '"cam.toml"', '"cam-from-curvature"', "no follower whose lift"),
-        (SLIDE, LIFT, '"cam.toml"', '"linkage.toml"', "does not describe a cam"),
+        (SLIDE, LIFT, '"cam.toml"', '"linkage.toml"', "describes a linkage, not a cam"),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\nspeed = 1', "speed, cam are given together"),
         (SLIDE, LIFT, 'cam = "cam.toml"', "speed = 1\ncam_speed = 1", "cam_speed is used with a cam only"),
         (SLIDE, LIFT, '"cam.toml"', '"cam.toml"\ncam_speed = 0', "must be positive"),

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.integrate import DOP853
 
-from centrode.numerics import machine_code
+from centrode.numerics import dormand_prince, machine_code
 from centrode.numerics.expressions import EXPRESSIONS, as_node, variable
 from centrode.numerics.initial_value_problems import (
     END,
@@ -130,3 +131,22 @@ def test_steps_end_where_nothing_has_a_value(executor: str) -> None:
     problem = InitialValueProblem((END, SMALLEST), {"x": m.sqrt(1.0 - variable(TIME))}, {}, error)
     found = integrator_of(problem, executor).run(np.array([[2.0], [1e-9]]), start(1, 1), 10_000)
     assert 0.999 < found[0, 0] <= 1.0 and found[1, 0] <= 1e-9
+
+
+def test_coefficients_are_those_of_the_scheme() -> None:
+    """SciPy's tables, digit for digit; and a step integrates powers of time as its orders say."""
+    stages = range(dormand_prince.STAGES)
+    assert [tuple(DOP853.A[k, :k]) for k in stages] == list(dormand_prince.A)
+    for mine, theirs in (
+        (dormand_prince.B, DOP853.B),
+        (dormand_prince.C, DOP853.C),
+        (dormand_prince.FIFTH, DOP853.E5),
+        (dormand_prince.THIRD, DOP853.E3),
+    ):
+        assert mine == tuple(theirs[: dormand_prince.STAGES])
+    b, c = np.array(dormand_prince.B), np.array(dormand_prince.C)
+    for power in range(8):
+        assert abs(b @ c**power - 1.0 / (power + 1)) <= 1e-14
+    assert abs(b @ c**8 - 1.0 / 9) > 1e-6
+    for row, time in zip(dormand_prince.A, c, strict=True):
+        assert abs(sum(row) - time) <= 1e-14

@@ -338,7 +338,7 @@ def driving(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     assert [type(sheet).__name__ for sheet in made.sheets] == [
         "MotionSheet",
         "VectorSheet",
-        "CamSheet",
+        "ProfileSheet",
     ] and not made.missing
     folder = tmp_path_factory.mktemp("driving")
     write_drawing_set(made, folder, ["dxf"])

@@ -140,6 +140,15 @@ def test_netcdf_reads_back_equal(make, tmp_path):
         assert all(str(variable).isascii() for variable in back.variables)
 
 
+def test_netcdf_keeps_slashes_in_names_out_of_the_file(tmp_path):
+    """The format keeps a slash for groups; what is read has the names as they were."""
+    dataset = xarray.Dataset({"force.B/AB": ("sample", [1.0, 2.0]), "force.B|AB": 3.0})
+    write_dataset(dataset, tmp_path / "forces.nc")
+    with xarray.open_dataset(tmp_path / "forces.nc", engine="scipy") as file:
+        assert not any("/" in str(name) for name in file.variables)
+    assert read_dataset(tmp_path / "forces.nc").identical(dataset)
+
+
 def test_netcdf_repeats_its_bytes(make, tmp_path):
     _mechanism, dataset = make("worked")
     for path in ("a.nc", "b.nc"):

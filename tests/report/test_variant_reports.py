@@ -20,7 +20,7 @@ from centrode.report.topics import result_of
 from centrode.report.variants import files
 from centrode.report.variants.answers import answer_sheet
 from centrode.report.variants.files import VariantReport, study_of_variant, write_variant_reports
-from centrode.topics.registry import INTEGRATE
+from centrode.topics.equations import INTEGRATE
 
 ROWS = [
     {"variant": "first", "l2": 1.0, "l3": 1.2},

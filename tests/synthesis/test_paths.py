@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.synthesis import curve_matching, four_bars, path_synthesis
+from centrode.synthesis import four_bars, path_synthesis, start_candidates
 from centrode.synthesis.cognates import cognates
-from centrode.synthesis.requests import parse_synthesis
+from centrode.synthesis.requests import SYNTHESES
 from coupler_continuation import walk
 
 PATHS = Path(__file__).parent.parent / "reference" / "paths"
@@ -20,7 +20,7 @@ PATHS = Path(__file__).parent.parent / "reference" / "paths"
 
 def request(lines: str, constraints: str = "") -> ct.SynthesisTask:
     text = f'[synthesis]\ntopology = "crank-rocker"\nkind = "path"\n{lines}\n[synthesis.constraints]\n{constraints}'
-    return parse_synthesis(text, "path.toml", PATHS)
+    return SYNTHESES.parse(text, "path.toml", PATHS)
 
 
 def rows(name: str) -> np.ndarray:
@@ -97,7 +97,7 @@ def test_constraints_are_kept(monkeypatch) -> None:
         'crank = "OA"\ntransmission = "40 deg"\nlength_ratio = 6\npivots = { x = [-60, 60], y = [-60, 60] }\n'
         "size = [125, 100]"
     )
-    few = functools.partial(curve_matching.closed_candidates, count=100)
+    few = functools.partial(start_candidates.closed_candidates, count=100)
     monkeypatch.setattr(path_synthesis, "closed_candidates", few)
     found = ct.synthesise(request('targets = "yu1.csv"', limits))
     for answer in found.answers:

@@ -7,7 +7,8 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics.preparation import ready
-from centrode.tolerances.clearances import clearance_extents, play_of, with_free_joints
+from centrode.tolerances.clearances import clearance_extents, with_free_joints
+from centrode.tolerances.joint_play import play_of
 
 PINS = 'O = "0.1 mm"\nA = "0.1 mm"\nB = "0.1 mm"\n'
 
@@ -158,7 +159,88 @@ def test_outputs_that_fold() -> None:
     assert "mean" not in found
 
 
-def test_the_sphere_is_refused() -> None:
-    mechanism = with_play("spherical-four-bar", 'B = "0.1 mm"\n')
-    with pytest.raises(ct.InputError, match="plane only"):
-        ct.tolerances(mechanism, "range(joint_angle_DC)", {"links.AB.length": (-1e-4, 1e-4)}, draws=10)
+ON_SPHERE = "".join(f'{pin} = "0.5 deg"\n' for pin in "ABCD")
+
+
+def test_virtual_work_on_the_sphere() -> None:
+    """A unit moment on the rocker: what each joint bears across its pin is what its play adds."""
+    mechanism = with_play("spherical-four-bar", ON_SPHERE)
+    joints = play_of(mechanism)
+    found = clearance_extents(ready(mechanism), {"u": "joint_angle.DC"}, joints, 37)["u"]
+    load = '\n[[loads]]\nkind = "torque"\nlink = "DC"\nvalue = 1\n'
+    borne = ct.reactions(ct.parse_mechanism(ct.mechanism_text(ct.example("spherical-four-bar")) + load), 37)
+    motion = ct.motion(mechanism, 37)
+    for number, joint in enumerate(joints):
+        force = borne["joint_force"].sel(side=joint.name).to_numpy()
+        pin = motion["position"].sel(point=joint.point).to_numpy()
+        across = force - (force * pin).sum(axis=1)[:, None] * pin
+        exact = joint.play * np.linalg.norm(across, axis=1)
+        assert np.abs(found.shares[:, number] - exact).max() < 1e-14 * np.abs(exact).max(), joint.name
+
+
+def test_true_extremes_on_the_sphere_by_brute_force() -> None:
+    """Holes turned about axes across them: none of many lies beyond the extremes, and the best come close."""
+    mechanism = with_play("spherical-four-bar", ON_SPHERE)
+    joints = play_of(mechanism)
+    found = clearance_extents(ready(mechanism), {"u": "joint_angle.DC"}, joints, 25)["u"]
+    worst = int(np.argmax(found.first_order))
+    free = with_free_joints(mechanism, joints)
+    paths = [
+        f"links.{joint.body}.points.{joint.point}.{axis}"
+        for joint in joints
+        for axis in ("longitude", "latitude")
+    ]
+    at = [float(np.array(ct.motion(mechanism, 25)["drive_value"])[worst, 0])]
+    moving = ct.solver(free, paths, at=at, outputs="joint_angle.DC")
+    nominal = float(np.ravel(moving.outputs(list(moving.own)))[0])
+    deviations = []
+    for angles in np.random.default_rng(5).uniform(0, 2 * np.pi, (1500, len(joints))):
+        values: list[float] = []
+        for joint, angle in zip(joints, angles, strict=True):
+            longitude, latitude = mechanism.links[joint.body].coordinates[joint.point]
+            # holes of arcs lie on the equator of their link
+            assert latitude == 0.0
+            x, y, z = np.cos(joint.play), *(np.sin(joint.play) * np.array([np.cos(angle), np.sin(angle)]))
+            values += [longitude + float(np.arctan2(y, x)), float(np.arcsin(z))]
+        deviations.append(float(np.ravel(moving.outputs(values))[0]) - nominal)
+    assert found.lower <= min(deviations)
+    assert max(deviations) <= found.upper
+    assert max(deviations) > 0.93 * found.upper
+    assert min(deviations) < 0.93 * found.lower
+    assert found.upper == pytest.approx(float(found.first_order[worst]), rel=0.05)
+
+
+def test_sides_that_forces_choose_on_the_sphere() -> None:
+    """A moment on the rocker alone presses every pin to where the rocker gives way."""
+    text = ct.mechanism_text(ct.example("spherical-four-bar")).replace("speed = 1.0", "speed = 1e-9")
+    load = '\n[[loads]]\nkind = "torque"\nlink = "DC"\nvalue = -1\n[tolerances.clearances]\n'
+    loaded = ct.parse_mechanism(text + load + ON_SPHERE)
+    found = clearance_extents(ready(loaded), {"u": "joint_angle.DC"}, play_of(loaded), 37)["u"]
+    assert found.by_force is not None
+    assert found.by_force == pytest.approx(-found.first_order, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("output", "told"), [("joint_force.B/BC.x", "moves positions"), ("reduced_inertia", "moves positions")]
+)
+def test_forces_by_play_on_the_sphere_are_refused(output: str, told: str) -> None:
+    mechanism = with_play("spherical-crank-rocker-rigid", 'B = "0.1 deg"\n')
+    with pytest.raises(ct.InputError, match=told):
+        clearance_extents(ready(mechanism), {"output": output}, play_of(mechanism))
+
+
+def test_guides_on_the_sphere_are_refused() -> None:
+    mechanism = with_play("spherical-crank-guide", 'B = "0.1 deg"\n')
+    with pytest.raises(ct.InputError, match="without guides"):
+        clearance_extents(ready(mechanism), {"x": "position.C.x"}, play_of(mechanism))
+
+
+def test_holes_at_a_pole_of_their_link_are_refused() -> None:
+    text = ct.mechanism_text(ct.example("spherical-four-bar"))
+    turned = text.replace(
+        '[links.BC]\nlength = "0.7853981633974483 rad"',
+        '[links.BC]\npoints = { B = [0, "90 deg"], C = [0, "45 deg"] }',
+    )
+    mechanism = ct.parse_mechanism(turned + '\n[tolerances.clearances]\nB = "0.1 deg"\n')
+    with pytest.raises(ct.InputError, match="pole of its link"):
+        ct.tolerances(mechanism, "joint_angle.DC", {"links.AB.length": (-1e-4, 1e-4)}, draws=10)

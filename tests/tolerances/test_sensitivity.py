@@ -10,6 +10,10 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.kinematics.preparation import ready
+from centrode.model.files import with_value
+from centrode.tolerances.dimension_limits import length_paths
+from centrode.tolerances.limit_gradient import gradient_at_limit
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
@@ -234,7 +238,57 @@ def test_sphere_against_differences_in_fifty_digits() -> None:
         assert row == pytest.approx(sense * np.array(exact), rel=1e-12, abs=1e-13)
 
 
+@pytest.mark.parametrize(
+    "name", ["triple-rocker", "slider-between-cranks-locked", "stephenson-driven-at-coupler"]
+)
+def test_limits_by_the_constraints_are_those_by_radicands(name: str) -> None:
+    """Two routes: the radicand of the group that locks, and a vector that makes the Jacobian singular."""
+    mechanism = ct.example(name)
+    paths = length_paths(mechanism)
+    found = ct.sensitivity(mechanism, ["limit.least", "limit.greatest"], by=paths)
+    for end in ("limit.least", "limit.greatest"):
+        by_constraints = gradient_at_limit(ready(mechanism), paths, float(found[end]))
+        assert by_constraints == pytest.approx(gradient(found, end), rel=1e-12, abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [
+        ("stephenson-driven-at-rocker", "links.OA.length"),
+        ("watt-driven-second-loop", "links.PR.length"),
+        ("watt-driven-second-loop", "frame.points.D.x"),
+    ],
+)
+def test_limits_of_groups_of_higher_class(name: str, path: str) -> None:
+    """Against differences of the limits themselves, extrapolated to steps of zero (Richardson)."""
+    mechanism = ct.example(name)
+    found = ct.sensitivity(mechanism, ["limit.least", "limit.greatest"], by=[path])
+    own = float(found["value"][0])
+
+    def ends(value: float) -> Array:
+        limits = ct.limits(with_value(mechanism, path, value))
+        assert limits.low is not None
+        assert limits.high is not None
+        return np.array([limits.low.value, limits.high.value])
+
+    coarse, fine = ((ends(own + h) - ends(own - h)) / (2 * h) for h in (2e-4, 1e-4))
+    exact = (4 * fine - coarse) / 3
+    slopes = [gradient(found, end)[0] for end in ("limit.least", "limit.greatest")]
+    assert np.abs(slopes - exact).max() < 1e-8 * max(1.0, np.abs(exact).max())
+
+
 # Refusals, and where derivatives are missing.
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("planetary-hypocycloid", "turns are counted"), ("spherical-crank-guide", "guides that close")],
+)
+def test_mechanisms_without_derivatives_are_refused_with_a_reason(name: str, told: str) -> None:
+    point = ct.example(name).moving_points[-1]
+    with pytest.raises(ct.InputError, match=told) as refused:
+        ct.sensitivity(name, [f"position.{point}.x"], samples=5)
+    assert "sweep" in str(refused.value)
 
 
 def test_derivatives_are_missing_beyond_limits_with_a_status() -> None:

@@ -17,7 +17,7 @@ from centrode.model.settings import Display
 from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.render.spelling import PlainSpelling
-from centrode.topics.registry import ROTATABILITY
+from centrode.topics.kinematics import ROTATABILITY
 from centrode.views.rotatability import cause_text
 from report.texts import texts_of
 from turning import recorded

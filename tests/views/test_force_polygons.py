@@ -20,7 +20,7 @@ from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.sheet import Formula
 from centrode.sheets.texts import NOTHING
-from centrode.topics.registry import FORCE_POLYGONS
+from centrode.topics.dynamics import FORCE_POLYGONS
 from centrode.views.force_equations import step_equations
 from centrode.views.force_polygons import step_text
 

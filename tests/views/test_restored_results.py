@@ -58,7 +58,9 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     "cam-contact": lambda: ct.cam_contact(WALKING_WHEEL, 37),
     "follower-profile": lambda: ct.cam_profile(VALVE_CAM, 37),
     "follower-forces": lambda: ct.cam_forces(VALVE_CAM, 37),
-    "sensitivity": lambda: ct.sensitivity(PRESS, ["range(position_H_x)", "position.H"], samples=37),
+    "sensitivity": lambda: ct.sensitivity(
+        PRESS, ["range(position_H_x)", "position.H", "joint_force.B/AB.x"], samples=37
+    ),
     "cam-sensitivity": lambda: ct.sensitivity(VALVE_CAM, ["lift"], samples=37),
 }
 VALUES_OF_FUNCTIONS: dict[str, Callable[[], object]] = {

@@ -38,8 +38,9 @@ from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import Abscissa, AxisLabel
 from centrode.sheets.sheet import Column, Illustration, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
+from centrode.topics.kinematics import CENTRES, DIAGRAMS
 from centrode.topics.order import in_order
-from centrode.topics.registry import CENTRES, DIAGRAMS, TOPICS
+from centrode.topics.registry import TOPICS
 from centrode.topics.topic import Command, Lazily, Topic, ValueOption
 from report.texts import texts_of
 from samples import few

@@ -16,6 +16,7 @@ from centrode.app.edit_drags import reshape
 from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
+from centrode.app.gear_bench import gear_answer
 from centrode.app.move_drags import motion_answer, place_on_way, way_of
 from centrode.app.operations import apply_operations
 from centrode.app.panels import panel_of, topic_list, topics_of
@@ -81,6 +82,7 @@ class Workbench:
             "import": self.import_link,
             "export": self.export,
             "page": self.page,
+            "gears": gear_answer,
         }
 
     def answer(self, message: Message) -> Answer:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
+from centrode.app.cam_followers import follower_scene
 from centrode.app.cam_segments import segment_rows
 from centrode.app.documents import Document
 from centrode.app.quantity_texts import field_text
@@ -39,6 +42,12 @@ FIELDS = {
     "friction": mark("coefficient of friction"),
 }
 """Numbers of the cam and its follower, as the editor names them."""
+FIELDS_OF = {
+    ("start", "radius"): mark("radius at the start"),
+    ("roller", "radius"): mark("radius of the roller"),
+    ("range", "to"): mark("end of the path"),
+}
+"""Those whose names tell nothing without their table."""
 
 
 def cam_scene(document: Document) -> dict[str, Any]:
@@ -63,6 +72,8 @@ def _cam(document: Document) -> dict[str, Any]:
         "base": None,
         "roller": None,
         "displacement": None,
+        "follower": None,
+        "carrier": None,
         "segments": list(segment_rows(document)),
     }
     cam = document.cam
@@ -76,22 +87,33 @@ def _cam(document: Document) -> dict[str, Any]:
         profile = cam_profile(cam, SAMPLES)
     except CentrodeError as failure:
         # the path of a roller is there without the roller
-        pitch = None if isinstance(cam, PlateCam) else _path_of_roller(cam)
-        return {**found, "pitch": pitch, "open": True, "missing": failure.what, "repair": failure.repair}
+        path = {} if isinstance(cam, PlateCam) else _path_of_roller(cam)
+        return {**found, **path, "open": True, "missing": failure.what, "repair": failure.repair}
     found["profile"] = _places(profile["profile"].to_numpy())
-    if "path" in profile:
-        found["pitch"] = _places(profile["path"].to_numpy())
+    if isinstance(cam, PlateCam):
+        found["follower"] = follower_scene(cam, np.linspace(0.0, math.tau, SAMPLES))
+    if not isinstance(cam, PlateCam):
+        found |= _roller_on_path(profile)
+    elif "roller_centre" in profile:
+        found["pitch"] = _places(profile["roller_centre"].to_numpy())
     for key, name in (("base", "base_radius"), ("roller", "roller")):
         value = profile.attrs.get(name)
         found[key] = float(value) if value is not None and np.isfinite(value) else None
     return found
 
 
-def _path_of_roller(cam: Cam) -> list[list[float]] | None:
+def _path_of_roller(cam: Cam) -> dict[str, Any]:
     try:
-        return _places(course_of(cam, SAMPLES)["roller_centre"].to_numpy())
+        return _roller_on_path(course_of(cam, SAMPLES))
     except CentrodeError:
-        return None
+        return {}
+
+
+def _roller_on_path(data: xr.Dataset) -> dict[str, Any]:
+    """Where a carrier leads its roller around a cam that stands, as far as it is known: angles [rad] and places."""
+    places, angles = data["roller_centre"].to_numpy(), data["carrier_angle"].to_numpy()
+    known = np.isfinite(places).all(axis=1) & np.isfinite(angles)
+    return {"pitch": _places(places[known]), "carrier": [float(f"{x:.7g}") for x in angles[known]]}
 
 
 def _places(places: Any) -> list[list[float]]:
@@ -142,9 +164,14 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
         yield {
             "of": owner,
             "path": f"{path}.{key}",
-            "name": _(FIELDS[key]) if key in FIELDS else key.replace("_", " "),
+            "name": _field_name(owner, key),
             "value": number,
             "unit": found[1],
             "shown": field_text(number),
             "locked": False,
         }
+
+
+def _field_name(owner: str, key: str) -> str:
+    name = FIELDS_OF.get((owner, key)) or FIELDS.get(key)
+    return _(name) if name else key.replace("_", " ")

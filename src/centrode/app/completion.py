@@ -84,13 +84,13 @@ def _headings(schema: Schema, document: Document) -> Iterator[dict[str, str]]:
 
 def _keys(schema: Schema, document: Document, table: Place) -> Iterator[dict[str, str]]:
     inner = _at(schema, table)
-    present = _present(document, table)
+    present = _keys_given(document, table)
     for key, value in inner.get("properties", {}).items():
         if key not in present:
             yield {"label": key, "type": "key", "detail": _detail(schema, value)}
 
 
-def _present(document: Document, table: Place) -> Mapping[str, Any]:
+def _keys_given(document: Document, table: Place) -> Mapping[str, Any]:
     value: Any = document.tables
     for key in table:
         try:

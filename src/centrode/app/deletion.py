@@ -35,12 +35,12 @@ def delete_objects(patch: Patch, operation: Operation) -> None:
 def _delete_link(patch: Patch, link: str) -> None:
     sketch = patch.sketch
     points = sketch.links[link]
-    patch.remove(("links", link), *_referring(patch, sketch, link, "link"))
+    patch.remove(("links", link), *_references_to(patch, sketch, link, "link"))
     patch.text = marked_names(patch.text, {f"links.{link}.length": None})
     _drop_unused(patch, points)
 
 
-def _referring(patch: Patch, sketch: Sketch, name: str, kind: str) -> list[Place]:
+def _references_to(patch: Patch, sketch: Sketch, name: str, kind: str) -> list[Place]:
     """What goes with an object: entries that name it, and the key of its side."""
     places: list[Place] = []
     for place in references(sketch.tables, name, kind):
@@ -70,7 +70,7 @@ def _drop_unused(patch: Patch, points: Sequence[str]) -> None:
 
 def _forget(patch: Patch, point: str) -> None:
     """What still names a point that is gone."""
-    patch.remove(*_referring(patch, patch.sketch, point, "point"))
+    patch.remove(*_references_to(patch, patch.sketch, point, "point"))
     patch.text = marked_names(patch.text, {point: None})
 
 
@@ -90,7 +90,7 @@ def _delete_point(patch: Patch, point: str) -> None:
     if point not in sketch.points:
         return
     frame = sketch.tables.get("frame", {}).get("points")
-    gone: list[Place] = _referring(patch, sketch, point, "point")
+    gone: list[Place] = _references_to(patch, sketch, point, "point")
     gone += [place for place in key_places(sketch.tables, point, "point") if place[0] in ("points", "frame")]
     if isinstance(frame, list) and point in frame:
         patch.write((("frame", "points"), [one for one in frame if one != point]))

@@ -44,8 +44,8 @@ def _numbers(sketch: Sketch) -> Iterator[tuple[str, str, str, float, str]]:
             if start is not None or sketch.is_short_form:
                 yield name, f"drives.{name}.start", "φ", angle, "angle"
     for point in sketch.points:
-        if point in sketch.places and (sketch.is_short_form or point in sketch.fixed):
-            room = "points" if point not in sketch.fixed or sketch.is_short_form else "frame.points"
+        if point in sketch.places and (sketch.is_short_form or point in sketch.frame_points):
+            room = "points" if point not in sketch.frame_points or sketch.is_short_form else "frame.points"
             if sketch.on_sphere and not sketch.is_short_form:
                 continue
             kind = "angle" if sketch.on_sphere else "length"

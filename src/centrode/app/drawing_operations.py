@@ -148,7 +148,7 @@ def _pole(one: Vector, other: Vector) -> Vector:
 def guide_point(patch: Patch, point: str, direction: float, pole: Vector | None = None) -> None:
     """Let a point slide in a straight line through it at an angle [rad], or in the circle about a pole."""
     sketch = patch.sketch
-    if point in sketch.fixed:
+    if point in sketch.frame_points:
         raise InputError(point, _("a point of the frame does not slide: switch Ground off first"))
     if sketch.guides_of(point):
         raise InputError(point, _("this point slides in a guide already"))

@@ -12,8 +12,17 @@ import numpy.typing as npt
 
 from centrode.app.documents import Document
 from centrode.app.sketch import Sketch
+from centrode.kinematics.higher_class.evaluation import sense_of
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import (
+    GroupSystem,
+    add_in_shape,
+    flatten_positions,
+    needed_positions,
+    plain,
+)
 from centrode.kinematics.path import JETS, unit_of
-from centrode.kinematics.plan_evaluation import FixedSigns, layout_of
+from centrode.kinematics.plan_evaluation import FixedSigns, layout_of, own_angle
 from centrode.kinematics.preparation import Ready
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
@@ -33,18 +42,9 @@ FIRST_DAMPING, LEAST_DAMPING, GREATEST_DAMPING = 1e-3, 1e-12, 1e6
 
 
 def has_free_place(document: Document) -> bool:
-    """Whether drives have values of their own in a drag: several of them, or one without a law.
-
-    Groups of higher class, and turns that gears count, follow the motion in time.
-    """
+    """Whether drives have values of their own in a drag: several of them, or one without a law."""
     position = document.position
-    if position is None:
-        return False
-    structure = position.structure
-    follows = any(isinstance(group, Newton) for group in structure.groups) or any(
-        map(bool, structure.counted)
-    )
-    return not follows and (len(position.mechanism.drives) > 1 or document.prepared is None)
+    return position is not None and (len(position.mechanism.drives) > 1 or document.prepared is None)
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,7 @@ class DrivenPosition:
     angles : link -> angle [rad], of the links that have one
     slopes, bends : name -> first and second derivatives of its place by the drives, (drives, axes) and (drives, drives,
         axes)
+    positions : the same with poses and counted angles, from which a position beside it goes on
     """
 
     values: dict[str, float]
@@ -65,6 +66,7 @@ class DrivenPosition:
     angles: dict[str, float]
     slopes: dict[str, Array]
     bends: dict[str, Array]
+    positions: Positions
 
     @property
     def is_reached(self) -> bool:
@@ -72,8 +74,16 @@ class DrivenPosition:
         return all(np.isfinite(place).all() for place in self.points.values())
 
 
-def position_at(prepared: Ready, values: Mapping[str, float]) -> DrivenPosition:
-    """Where everything stands at values of the drives, on the sides of the initial position."""
+def position_at(
+    prepared: Ready, values: Mapping[str, float], before: Positions | None = None
+) -> DrivenPosition:
+    """Where everything stands at values of the drives, on the sides of the initial position.
+
+    Groups of higher class, and turns that gears count, go on from a position `before`; without one from the initial
+    position along the straight way to these values.
+    """
+    if before is None:
+        before = _positions_on_the_way(prepared, values)
     kinematics, count = prepared.kinematics, len(values)
     # a lane for each pair of drives: in it both move, and one moves alone where it is paired with itself
     pairs = [(i, j) for i in range(count) for j in range(i, count)]
@@ -82,7 +92,7 @@ def position_at(prepared: Ready, values: Mapping[str, float]) -> DrivenPosition:
         name: Jet((np.full(len(pairs), value), np.array(moving[k]), np.zeros(len(pairs))))
         for k, (name, value) in enumerate(values.items())
     }
-    hooks = FixedSigns(JETS, prepared.assembled.signs)
+    hooks = _Beside(prepared, before, len(pairs))
     with np.errstate(all="ignore"):
         at = Positions.of_frame(kinematics.numbers, drives, ARRAYS)
         kinematics.advance(at, range(len(kinematics.structure.groups)), JETS, hooks)
@@ -94,13 +104,94 @@ def position_at(prepared: Ready, values: Mapping[str, float]) -> DrivenPosition:
         points[name] = place[0]
         slopes[name] = first[[pairs.index((k, k)) for k in range(count)]]
         bends[name] = _mixed_derivatives(second, pairs, count)
+    here = at.map_numbers(lambda x: float(_lanes(x, 0, len(pairs))[0]))
     angles = {}
     for link in layout.links if layout.axes == 2 else ():
-        cosine, sine = (float(_lanes(x, 0, len(pairs))[0]) for x in at.poses[link][1])
+        cosine, sine = here.poses[link][1]
         angles[link] = math.atan2(sine, cosine)
     return DrivenPosition(
-        {name: float(value) for name, value in values.items()}, points, angles, slopes, bends
+        {name: float(value) for name, value in values.items()}, points, angles, slopes, bends, here
     )
+
+
+def angle_at(prepared: Ready, position: DrivenPosition, link: str) -> float:
+    """Angle [rad] of a link as its description gives it, with the turns that gears count; NaN of one that has none."""
+    counted = position.positions.angles.get(link)
+    if counted is not None:
+        return float(counted)
+    numbers = prepared.kinematics.numbers
+    if "rolling" in numbers.space.lacks and numbers.reference(link) is None:
+        return math.nan
+    return float(own_angle(ARRAYS, numbers, position.positions, link))
+
+
+class _Beside(FixedSigns):
+    """Signs of the initial position; what has no sign, and turns, go on from a position beside this one."""
+
+    def __init__(self, prepared: Ready, before: Positions, lanes: int) -> None:
+        super().__init__(JETS, prepared.assembled.signs)
+        self.prepared, self.before, self.lanes = prepared, before, lanes
+
+    def continue_angle(self, group: int, key: str, angle: Any) -> Any:
+        near = self.before.angles.get(key)
+        return angle if near is None else angle + math.tau * np.round((near - plain(angle)) / math.tau)
+
+    def higher(self, group: int, m: Any, at: Positions) -> None:
+        equations = self.prepared.structure.groups[group]
+        assert isinstance(equations, Newton)
+        numbers, shape = self.prepared.kinematics.numbers, (self.lanes,)
+        known = flatten_positions(needed_positions(equations, at), shape)
+        system = GroupSystem(equations, numbers, known.map_numbers(plain), self.lanes)
+        last = GroupSystem(equations, numbers, self.before, 1)
+        state = np.repeat(last.state_of(self.before), self.lanes, axis=0)
+        converged = newton(system, state)
+        # behind a limit the equations have another branch, on which their determinant has the other sign
+        start = self.prepared.assembled.positions
+        sense = sense_of(GroupSystem(equations, numbers, start, 1), last.state_of(start))
+        right = converged.found & (sense_of(system, converged.state) == sense)
+        state = np.where(right[:, None], converged.state, np.nan)
+        linear = system.linear(system.at(ARRAYS, system.known, state))
+        found = system.at(JETS, known, state, system.jets(known, state, linear, 2))
+        add_in_shape(found, equations, shape, at)
+
+
+def _positions_on_the_way(prepared: Ready, values: Mapping[str, float]) -> Positions:
+    """Positions beside those at values of the drives: kept ones of a drag, or by steps from the initial position."""
+    start = prepared.assembled.positions
+    structure = prepared.structure
+    if not (any(isinstance(one, Newton) for one in structure.groups) or any(map(bool, structure.counted))):
+        return start
+    kept = _KEPT.get(_key_of(prepared, values))
+    if kept is not None and kept[0] is prepared:
+        return kept[1]
+    units = [unit_of(drive, prepared.kinematics.path.scale) for drive in prepared.mechanism.drives]
+    begin = initial_values(prepared)
+    ways = [
+        abs(values[name] - begin[name]) / unit
+        for name, unit in zip(begin, units, strict=True)
+        if name in values
+    ]
+    steps = min(STEPS_OF_WAY, max(1, math.ceil(max(ways, default=0.0) / LONGEST)))
+    for k in range(1, steps):
+        share = {name: begin[name] + (value - begin[name]) * k / steps for name, value in values.items()}
+        start = position_at(prepared, share, start).positions
+    return start
+
+
+_KEPT: dict[tuple[int, tuple[tuple[str, float], ...]], tuple[Ready, Positions]] = {}
+"""Positions at which drags have arrived: the next step goes on from there."""
+KEPT = 64
+STEPS_OF_WAY = 400
+
+
+def _key_of(prepared: Ready, values: Mapping[str, float]) -> tuple[int, tuple[tuple[str, float], ...]]:
+    return id(prepared), tuple((name, float(value)) for name, value in values.items())
+
+
+def _keep(prepared: Ready, position: DrivenPosition) -> None:
+    _KEPT[_key_of(prepared, position.values)] = prepared, position.positions
+    while len(_KEPT) > KEPT:
+        del _KEPT[next(iter(_KEPT))]
 
 
 def _lanes(number: Any, order: int, count: int) -> Array:
@@ -150,13 +241,14 @@ def place_in_drive_space(
             break
         step *= min(1.0, LONGEST / size)
         values = {name: here.values[name] + float(x) for name, x in zip(names, step * units, strict=True)}
-        there = position_at(prepared, values)
+        there = position_at(prepared, values, here.positions)
         if there.is_reached and np.linalg.norm(there.points[point] - to) < np.linalg.norm(gap):
             here, damping = there, max(damping / 10.0, LEAST_DAMPING)
         else:
             damping *= 10.0
             if damping > GREATEST_DAMPING:
                 break
+    _keep(prepared, here)
     return here
 
 

@@ -3,40 +3,95 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from operator import mul
 from typing import Any
 
 from centrode.app.edit_drags import reshaped_by
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import Sketch, Vector
+from centrode.app.sketch import Sketch, Vector, on_unit_sphere
 from centrode.app.state_rows import set_ground
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import two_points
+from centrode.model.values import cross
 
 QUARTER = math.pi / 2
+BESIDE = math.pi / 12
+"""Angle [rad] by which a copy stands beside what it is of, on the sphere."""
+POLAR = 1e-6
+"""Distance [rad] from a pole within which no direction is east."""
 
 
 def duplicate(patch: Patch, operation: Operation) -> None:
-    """Put copies beside what is chosen."""
-    sketch = patch.plane_sketch()
-    by = patch.place_of(operation, "by")
-    links, points = _chosen(patch, patch.objects_of(operation))
+    """Put copies beside what is chosen: moved `by` a way [m], on the sphere turned `about` an axis by an angle."""
+    sketch = patch.drawn_sketch()
+    links, points = _links_and_points(patch, patch.objects_of(operation))
     for point in points:
         if point not in sketch.places:
             raise InputError(point, _("its place is not known: correct the description first"))
-    if not patch.sketch.draws_points:
-        _duplicate_measured(patch, links, points, by)
-        return
-    new = {
-        point: patch.new_point((sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]))
-        for point in points
-    }
+    if sketch.on_sphere:
+        places = _turned_places(patch, operation, {point: sketch.places[point] for point in points})
+    else:
+        by = patch.place_of(operation, "by")
+        if not sketch.draws_points:
+            _duplicate_measured(patch, links, points, by)
+            return
+        places = {
+            point: (sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]) for point in points
+        }
+    new = {point: patch.new_point(place) for point, place in places.items()}
     for point in points:
-        if point in sketch.fixed:
+        if point in sketch.frame_points:
             set_ground(patch, new[point], True)
     for link in links:
         _copy_link(patch, sketch, link, new)
+
+
+def _turned_places(patch: Patch, operation: Operation, places: Mapping[str, Vector]) -> dict[str, Vector]:
+    """Places on the sphere, turned; without an axis, along the parallel of their middle."""
+    angle = operation.get("angle", BESIDE)
+    if isinstance(angle, bool) or not isinstance(angle, int | float) or not math.isfinite(angle):
+        raise InputError("", _("a number is needed"))
+    _east, north = _directions(_middle(places.values()))
+    axis = north if operation.get("about") is None else patch.place_of(operation, "about")
+    return {name: rotate_about(place, axis, angle) for name, place in places.items()}
+
+
+def _middle(places: Iterable[Vector]) -> Vector:
+    """The place in the middle of others on the sphere; the first of them where they surround its centre."""
+    all_places = list(places)
+    total = tuple(map(sum, zip(*all_places, strict=True)))
+    return on_unit_sphere(total) or all_places[0]
+
+
+def _directions(place: Vector) -> tuple[Vector, Vector]:
+    """East and north at a place of the sphere; at the poles along the meridian of x."""
+    across = on_unit_sphere((-place[1], place[0], 0.0)) if math.hypot(*place[:2]) > POLAR else None
+    east = (0.0, 1.0, 0.0) if across is None else across
+    return east, _cross(place, east)
+
+
+def _cross(one: Vector, other: Vector) -> Vector:
+    (x, y, z), (u, v, w) = one, other
+    return cross((x, y, z), (u, v, w))
+
+
+def rotate_about(place: Vector, axis: Vector, angle: float) -> Vector:
+    """A place of the sphere turned about an axis by an angle [rad] (the formula of Rodrigues)."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    along, across = sum(map(mul, place, axis)), _cross(axis, place)
+    turned = (
+        x * cosine + y * sine + z * along * (1.0 - cosine)
+        for x, y, z in zip(place, across, axis, strict=True)
+    )
+    return tuple(turned)
+
+
+def reflect_in_plane(place: Vector, normal: Vector) -> Vector:
+    """The mirror image of a place of the sphere in the plane through its centre with a unit normal."""
+    off = sum(map(mul, place, normal))
+    return tuple(x - 2.0 * off * y for x, y in zip(place, normal, strict=True))
 
 
 def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) -> None:
@@ -58,7 +113,7 @@ def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) 
 def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector) -> None:
     """Copies of links with lengths and angles: each part of them hangs on a point of the frame."""
     sketch = patch.sketch
-    anchors = [point for point in points if point in sketch.fixed]
+    anchors = [point for point in points if point in sketch.frame_points]
     # a part that no point of the frame carries gets one: everything else hangs on it by lengths and angles
     anchors += [part[0] for part in _parts(sketch, links, points) if not set(part) & set(anchors)]
     free = patch.free_names()
@@ -85,7 +140,7 @@ def _parts(sketch: Sketch, links: Sequence[str], points: Sequence[str]) -> list[
     return parts
 
 
-def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:
+def _links_and_points(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]:
     """Links and points that are chosen; links bring their points."""
     sketch = patch.sketch
     links = [name for name in objects if name in sketch.links]
@@ -97,21 +152,39 @@ def _chosen(patch: Patch, objects: Sequence[str]) -> tuple[list[str], list[str]]
 
 
 def mirror(patch: Patch, operation: Operation) -> None:
-    """Put what is chosen at its mirror image."""
-    sketch = patch.plane_sketch()
-    _links, points = _chosen(patch, patch.objects_of(operation))
+    """Put what is chosen at its mirror image in a line, on the sphere in a great circle."""
+    sketch = patch.sketch
+    _links, points = _links_and_points(patch, patch.objects_of(operation))
     known = [sketch.places[one] for one in points if one in sketch.places]
     if len(known) < len(points):
         raise InputError("", _("its place is not known: correct the description first"))
-    (x, y), direction = _axis(patch, operation.get("axis"), known)
-    cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
-    moved: dict[str, Vector] = {}
     for point in points:
         if point in sketch.marks["fixed"]:
             raise InputError(point, _("this joint is held: switch Fixed off to drag it"))
-        u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
-        moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
+    if sketch.on_sphere:
+        normal = _circle_of_mirror(patch, operation.get("axis"), known)
+        moved = {point: reflect_in_plane(sketch.places[point], normal) for point in points}
+    else:
+        (x, y), direction = _axis(patch, operation.get("axis"), known)
+        cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
+        moved = {}
+        for point in points:
+            u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
+            moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
     patch.write(*reshaped_by(sketch, moved, patch.folder).assignments)
+
+
+def _circle_of_mirror(patch: Patch, axis: Any, places: Sequence[Vector]) -> Vector:
+    """Pole of the great circle that mirrors: through the middle of places, or through two places."""
+    if axis in ("x", "horizontal", "y", "vertical", None):
+        east, north = _directions(_middle(places))
+        return north if axis in ("x", "horizontal") else east
+    if isinstance(axis, list) and len(axis) == 2:
+        first, second = (patch.place_of({"axis": one}, "axis") for one in axis)
+        pole = on_unit_sphere(_cross(first, second))
+        if pole is not None:
+            return pole
+    raise InputError("", _('an axis is "x", "y" or two places'))
 
 
 def _axis(patch: Patch, axis: Any, places: Sequence[Vector]) -> tuple[Vector, float]:

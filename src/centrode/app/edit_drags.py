@@ -21,6 +21,7 @@ from centrode.app.sketch import (
     number,
     on_unit_sphere,
 )
+from centrode.app.sphere_drags import sphere_assignments
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
@@ -177,7 +178,7 @@ def _values(sketch: Sketch, places: Mapping[str, Vector], moved: Mapping[str, Ve
             values[f"links.{name}.length"] = sketch.distance(places[points[0]], places[points[1]])
     for point in moved:
         room = "points" if sketch.is_short_form else "frame.points"
-        if sketch.is_short_form or point in sketch.fixed:
+        if sketch.is_short_form or point in sketch.frame_points:
             numbers = zip(sketch.axes, sketch.numbers_of(places[point]), strict=True)
             values |= {f"{room}.{point}.{axis}": x for axis, x in numbers}
     return values
@@ -273,8 +274,6 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
 
 def edit_refusal(sketch: Sketch, name: str) -> str:
     """Why a point cannot be dragged to change lengths; empty where it can."""
-    if sketch.on_sphere and not sketch.is_short_form:
-        return _("on the sphere lengths and angles are changed in the text or in the fields")
     if name in sketch.marks["fixed"]:
         return _("this joint is held: switch Fixed off to drag it")
     if name not in sketch.places:
@@ -395,7 +394,7 @@ def moved_with(sketch: Sketch, point: str, place: Vector) -> dict[str, Vector]:
         joints = [
             one
             for one in points
-            if len(sketch.owners(one)) > 1 or one in sketch.fixed or sketch.guides_of(one)
+            if len(sketch.owners(one)) > 1 or one in sketch.frame_points or sketch.guides_of(one)
         ]
         if point not in joints or len(joints) != 2:
             continue
@@ -427,7 +426,7 @@ def reshaping_assignments(
     """Keys of the description with the values that put points at other places, everything else standing."""
     places = {**sketch.places, **moved}
 
-    def written(place: Place, value: float, kind: str) -> Assignment:
+    def assignment(place: Place, value: float, kind: str) -> Assignment:
         return place, written_quantity(
             sketch, value_at_place(sketch.tables, place), value, kind, exactly=exactly
         )
@@ -445,7 +444,8 @@ def reshaping_assignments(
             within = (*within, "placed") if isinstance(old, Mapping) else within
             yield from pair(within, places[point])
     if sketch.on_sphere:
-        return  # what a link needs follows from its points
+        yield from sphere_assignments(sketch, moved, assignment, pair)
+        return
     turned: dict[str, float] = {}
     for name, points in sketch.links.items():
         if len(points) < 2 or not any(point in moved for point in points):
@@ -468,13 +468,13 @@ def reshaping_assignments(
             pose = pose_between(places, points)
             if pose is None:
                 raise InputError(f"[links.{name}]", _("its points would coincide"), _("drag it another way"))
-            yield written(
+            yield assignment(
                 ("links", name, "length"), math.dist(places[points[0]], places[points[1]]), "length"
             )
         turned[name] = near_angle(pose[1], sketch.angle(name))
         if link.get("angle") is not None:
-            yield written(("links", name, "angle"), turned[name], "angle")
-    yield from _starts(sketch, places, turned, moved, written)
+            yield assignment(("links", name, "angle"), turned[name], "angle")
+    yield from _starts(sketch, places, turned, moved, assignment)
 
 
 def written_place(
@@ -496,7 +496,7 @@ def _starts(
     places: Mapping[str, Vector],
     turned: Mapping[str, float],
     moved: Mapping[str, Vector],
-    written: Any,
+    assignment: Any,
 ) -> Iterator[Assignment]:
     """Values at which drives start."""
 
@@ -517,10 +517,10 @@ def _starts(
                 follows_from_points(sketch, link) or sketch.tables["links"][link].get("angle") is not None
             )
             if own is not None and other is not None and stated:
-                yield written(place, near_angle(own - other, start), "angle")
+                yield assignment(place, near_angle(own - other, start), "angle")
         elif isinstance(drive.get("distance"), list) and any(point in moved for point in drive["distance"]):
             first, second = drive["distance"]
-            yield written(place, math.dist(places[first], places[second]), "length")
+            yield assignment(place, math.dist(places[first], places[second]), "length")
         elif isinstance(drive.get("guide"), str):
             guide = next(
                 (
@@ -535,7 +535,7 @@ def _starts(
                 through, direction = guide_line(sketch, guide)
                 if through is not None and direction is not None:
                     x, y = places[point][0] - through[0], places[point][1] - through[1]
-                    yield written(place, x * math.cos(direction) + y * math.sin(direction), "length")
+                    yield assignment(place, x * math.cos(direction) + y * math.sin(direction), "length")
 
 
 def follows_from_points(sketch: Sketch, name: str) -> bool:
@@ -575,7 +575,7 @@ def new_pose(sketch: Sketch, name: str, moved: Mapping[str, Vector]) -> Pose | N
     places = {**sketch.places, **moved}
     at_origin = next((point for point, place in local.items() if place == (0.0, 0.0)), None)
     along = [point for point, place in local.items() if place[0] > 0.0 and place[1] == 0.0]
-    joints = [one for one in along if len(sketch.owners(one)) > 1 or one in sketch.fixed]
+    joints = [one for one in along if len(sketch.owners(one)) > 1 or one in sketch.frame_points]
     # the farther of them, or the joint: a centre of mass moves with it
     tip = max(joints or along, key=lambda point: local[point][0], default=None)
     if at_origin is None or tip is None or not {at_origin, tip} & set(moved):

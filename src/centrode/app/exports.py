@@ -13,6 +13,7 @@ from typing import Any
 from centrode import render
 from centrode.app.documents import Document
 from centrode.app.frames import frame_bytes
+from centrode.app.model_exports import MODELS, model_files
 from centrode.app.panels import topic_named, topic_sheet
 from centrode.errors import InputError
 from centrode.kinematics.motion import initial_place, motion, motion_among
@@ -24,7 +25,6 @@ from centrode.topics.topic import Lazily
 REPORT = Lazily("centrode.report.document", "report")
 DOCUMENT = Lazily("centrode.report.files", "document")
 PAGE = Lazily("centrode.report.mechanism_page.page_file", "mechanism_page")
-MJCF = Lazily("centrode.export.mjcf", "mjcf_text")
 DRAWING = Lazily("centrode.render.drafting.sheet", "mechanism_drawing")
 SCALE = Lazily("centrode.render.drafting.scales", "read_scale")
 DRAWING_FILES = {
@@ -43,13 +43,21 @@ TYPES = {
     "dxf": "image/vnd.dxf",
     "svg": "image/svg+xml",
     "xml": "application/xml",
+    "urdf": "application/xml",
+    "sdf": "application/xml",
+    "fmu": "application/zip",
+    "FCMacro": "text/plain; charset=utf-8",
+    "c": "text/plain; charset=utf-8",
+    "py": "text/x-python; charset=utf-8",
+    "m": "text/plain; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
 }
 """Ending of a file -> its type."""
 EXPORTS = {
     "report": (mark("Report"), ("html", "pdf", "docx", "ipynb")),
     "drawing": (mark("Drawing to scale"), ("dxf", "svg")),
-    "model": (mark("Model for MuJoCo"), ("xml",)),
     "page": (mark("Page to change dimensions on"), ("html",)),
+    **MODELS,
 }
 """What is written of the whole description, and the endings of its files."""
 SCALES = re.compile(r"[0-9]{1,4}(?:\.[0-9]{1,3})?:[0-9]{1,4}(?:\.[0-9]{1,3})?")
@@ -58,7 +66,13 @@ SCALES = re.compile(r"[0-9]{1,4}(?:\.[0-9]{1,3})?:[0-9]{1,4}(?:\.[0-9]{1,3})?")
 def export_list() -> list[dict[str, Any]]:
     """Name, title and formats of what is written of the whole, in the chosen language."""
     return [
-        {"name": name, "title": _(title), "formats": list(kinds)} for name, (title, kinds) in EXPORTS.items()
+        {
+            "name": name,
+            "title": _(title),
+            "formats": list(kinds),
+            "for": None if name == "report" else "mechanism",
+        }
+        for name, (title, kinds) in EXPORTS.items()
     ]
 
 
@@ -74,12 +88,12 @@ def exported_file(document: Document, topic: object, kind: object, options: obje
     stem = file_stem(document)
     if isinstance(topic, str) and topic in EXPORTS:
         if kind not in EXPORTS[topic][1]:
-            raise _unknown(kind, EXPORTS[topic][1])
+            raise _unknown_format(kind, EXPORTS[topic][1])
         table: Mapping[Any, Any] = options if isinstance(options, Mapping) else {}
         return _of_whole(document, topic, str(kind), table, stem)
     chosen = topic_named(topic)
     if kind not in ("csv", "xlsx"):
-        raise _unknown(kind, ("csv", "xlsx"))
+        raise _unknown_format(kind, ("csv", "xlsx"))
     sheet, description = topic_sheet(document, chosen, options, None)
     with tempfile.TemporaryDirectory(prefix="centrode-") as folder:
         spelling = TableSpelling(xlsx=kind == "xlsx", comma=False)
@@ -93,8 +107,16 @@ def exported_file(document: Document, topic: object, kind: object, options: obje
             raise InputError("", _("this topic has no tables here"))
         if len(files) == 1:
             return file_answer(f"{stem}-{files[0].stem}.{kind}", files[0].read_bytes())
-        packed = _archive({path.relative_to(folder).as_posix(): path.read_bytes() for path in files})
-    return file_answer(f"{stem}-{chosen.name}.zip", packed)
+        contents = {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+    return _one_file(contents, f"{stem}-{chosen.name}.zip")
+
+
+def _one_file(files: Mapping[str, bytes], archive: str) -> bytes:
+    """A file as an answer; of several an archive."""
+    if len(files) > 1:
+        return file_answer(archive, _archive(files))
+    ((name, content),) = files.items()
+    return file_answer(name, content)
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:
@@ -106,7 +128,7 @@ def _archive(files: Mapping[str, bytes]) -> bytes:
     return stream.getvalue()
 
 
-def _unknown(kind: object, known: tuple[str, ...]) -> InputError:
+def _unknown_format(kind: object, known: tuple[str, ...]) -> InputError:
     return InputError(
         "", _("there is no such format"), _("use one of {known}").format(known=", ".join(known))
     )
@@ -129,9 +151,8 @@ def _of_whole(document: Document, topic: str, kind: str, options: Mapping[Any, A
         return file_answer(f"{stem}.{kind}", content)
     mechanism = document.require_mechanism()
     document.require_prepared()
-    if topic == "model":
-        text = MJCF(mechanism, motion(mechanism, at=[initial_place(mechanism)]))
-        return file_answer(f"{stem}.xml", text.encode())
+    if topic in MODELS:
+        return _one_file(model_files(mechanism, kind, stem), f"{stem}-{kind}.zip")
     if topic == "page":
         return file_answer(
             f"{stem}.html", PAGE(mechanism, language=chosen_language(), source=f"{stem}.toml").encode()

@@ -124,7 +124,7 @@ def _kept_way(key: _ById) -> Way:
 
 def move_refusal(sketch: Sketch, name: str) -> str:
     """Why a point cannot be dragged to move the mechanism; empty where it can."""
-    if name in sketch.fixed:
+    if name in sketch.frame_points:
         return _("a point of the frame does not move")
     if sketch.document.position is None:
         return _("the mechanism cannot move yet")

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from typing import Any
 
-from centrode.app.drive_space import initial_values, position_at, starts_of
 from centrode.app.edit_drags import (
     Assignment,
     follow,
@@ -16,20 +14,16 @@ from centrode.app.edit_drags import (
     written_position,
 )
 from centrode.app.patches import Operation, Patch
-from centrode.app.quantity_texts import read_field, typed_quantity, with_decimal_point, written_quantity
-from centrode.app.sketch import Sketch, Vector, drive_name, number
+from centrode.app.quantity_texts import read_field, typed_quantity, with_decimal_point
+from centrode.app.sketch import Sketch, Vector, drive_name
 from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
-from centrode.kinematics.preparation import ready
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
-from centrode.model.files import with_values
 from centrode.model.reading import Place, value_text
 from centrode.model.units import number_and_unit
 from centrode.model.values import tangent_towards, unit_vector
 
-UNCHANGED = 1e-9
-"""Starts [rad or m] that differ by less are the same."""
 AXES = {"x": 0, "y": 1, "longitude": 0, "latitude": 1}
 KINDS = {"length": "length", "angle": "angle", "mass": "mass", "inertia": "inertia", "radius": "length"}
 """Key of a link -> kind of quantity."""
@@ -72,8 +66,8 @@ def set_number(patch: Patch, operation: Operation) -> None:
 def _stretch(patch: Patch, sketch: Sketch, link: str, length: float) -> None:
     """Another length of a link that cannot move yet: its second point goes, or its first where that one is free."""
     first, second = sketch.links[link][:2]
-    if second in sketch.fixed or (
-        len(sketch.owners(second)) > 1 and len(sketch.owners(first)) < 2 and first not in sketch.fixed
+    if second in sketch.frame_points or (
+        len(sketch.owners(second)) > 1 and len(sketch.owners(first)) < 2 and first not in sketch.frame_points
     ):
         first, second = second, first
     if sketch.on_sphere:
@@ -105,50 +99,8 @@ def along_arc(start: Vector, towards: Vector, way: float) -> Vector:
     )
 
 
-def set_starts(patch: Patch, operation: Operation) -> None:
-    """Let all drives start at other values [rad or m], and with them everything that the text places."""
-    sketch, wished = patch.sketch, operation.get("drives")
-    prepared = sketch.document.position
-    values = {} if prepared is None else initial_values(prepared)
-    if prepared is None or not isinstance(wished, Mapping) or set(wished) != set(values):
-        raise InputError("", _("the server does not know these drives"))
-    if not all(isinstance(one, int | float) and math.isfinite(one) for one in wished.values()):
-        raise InputError("", _("a number is needed"))
-    position = position_at(prepared, {name: float(wished[name]) for name in values})
-    if not position.is_reached:
-        raise InputError("", _("the mechanism cannot stand there"), _("drag it another way"))
-    starts = starts_of(sketch, position)
-    mechanism = prepared.mechanism
-    angles = {
-        f"links.{name}.angle": position.angles[name]
-        for name, link in mechanism.links.items()
-        if link.angle is not None and name in position.angles
-    }
-    numbers = {f"drives.{name}.start": start for name, start in starts.items()}
-    there = ready(with_values(mechanism, {**angles, **numbers}))
-    own = dict(_written_starts(sketch, starts))
-    patch.write(*own.items(), *written_position(sketch, there, own.keys()))
-
-
-def _written_starts(sketch: Sketch, starts: Mapping[str, float]) -> Iterator[Assignment]:
-    """Starts that the text states, or that follow from nothing else in it."""
-    for k, drive in enumerate(sketch.drives):
-        name, link = drive_name(drive), drive.get("link")
-        stated = drive.get("start") is not None
-        follows = isinstance(link, str) and (
-            follows_from_points(sketch, link) or sketch.tables["links"][link].get("angle") is not None
-        )
-        if name not in starts or (follows and not stated):
-            continue
-        kind = coordinate_of_drive(drive, sketch.space).kind
-        old = number(drive.get("start"), kind) or 0.0
-        if abs(starts[name] - old) > UNCHANGED:
-            yield ("drives", k, "start"), written_quantity(sketch, drive.get("start"), starts[name], kind)
-
-
 def move_point(patch: Patch, operation: Operation) -> None:
     """Put a joint at another place."""
-    patch.drawn_sketch()
     drop_point(patch, patch.point_of(operation), patch.place_of(operation, "to"))
 
 
@@ -186,7 +138,7 @@ def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
                 return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
         case "frame":
             name, _dot, axis = rest.removeprefix("points.").rpartition(".")
-            if axis in AXES and name in sketch.fixed:
+            if axis in AXES and name in sketch.frame_points:
                 if sketch.is_short_form and name in sketch.tables["points"]:
                     return ("points", name, AXES[axis]), "angle" if sketch.on_sphere else "length"
                 return ("frame", "points", name, AXES[axis]), "length"

@@ -8,10 +8,11 @@ from pathlib import Path
 from centrode.app.cam_segments import add_segment, delete_segment, set_curve
 from centrode.app.deletion import delete_objects
 from centrode.app.drawing_operations import add_guide, add_link, add_point
+from centrode.app.drive_starts import set_starts
 from centrode.app.duplication import duplicate, mirror
-from centrode.app.number_fields import lock, move_point, set_number, set_starts
+from centrode.app.name_changes import join_points, rename
+from centrode.app.number_fields import lock, move_point, set_number
 from centrode.app.patches import Operation, Patch
-from centrode.app.renaming import join_points, rename
 from centrode.app.sketch import Sketch
 from centrode.app.state_rows import ensure_references, set_row
 from centrode.errors import InputError

@@ -99,13 +99,6 @@ class Patch:
         self.text = changes.text
         self.changed.append(f"{room}.{len(changes.tables[room]) - 1}")
 
-    def plane_sketch(self) -> Sketch:
-        """What is drawn, in the plane; InputError on the sphere."""
-        sketch = self.sketch
-        if sketch.on_sphere:
-            raise InputError("", _("on the sphere this is changed in the text"))
-        return sketch
-
     def drawn_sketch(self) -> Sketch:
         """What is drawn; InputError on the sphere where links have arcs in place of points with coordinates."""
         sketch = self.sketch

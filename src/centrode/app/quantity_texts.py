@@ -10,7 +10,7 @@ from centrode.app.sketch import Sketch, display_units
 from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
 from centrode.locale import _, decimal_mark
-from centrode.model.units import number_and_unit, scaled, to_si, unit_factor
+from centrode.model.units import number_and_unit, scale_value, to_si, unit_factor
 
 FIELD_DIGITS = 6
 """Digits of a number in a field."""
@@ -92,7 +92,7 @@ def read_field(sketch: Sketch, text: object, kind: str) -> float:
     if not is_number(typed):
         return to_si(typed, kind)
     factor = display_units(sketch.tables).get(kind, {}).get("factor", 1.0)
-    return scaled(to_si(float(typed), kind), 1.0 / factor)
+    return scale_value(to_si(float(typed), kind), 1.0 / factor)
 
 
 def with_decimal_point(text: str) -> str:

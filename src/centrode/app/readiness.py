@@ -35,7 +35,7 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
         return answer
     answer["loose"] = sketch.loose_points()
     if document.prepared is None:
-        answer["missing"] += _missing(sketch)
+        answer["missing"] += _missing_parts(sketch)
         return answer
     checked = check_of(document.prepared)
     display = document.prepared.mechanism.display
@@ -50,9 +50,9 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
     return answer
 
 
-def _missing(sketch: Sketch) -> list[str]:
+def _missing_parts(sketch: Sketch) -> list[str]:
     sentences = []
-    if not sketch.fixed and not sketch.guides:
+    if not sketch.frame_points and not sketch.guides:
         sentences.append(_("no point belongs to the frame: switch Ground on at one"))
     freedom = _mobility(sketch)
     given = len(sketch.drives)

@@ -72,7 +72,7 @@ def _box(sketch: Sketch) -> list[list[float]]:
 
 def _point(sketch: Sketch, name: str) -> dict[str, Any]:
     owners = sketch.owners(name)
-    fixed = name in sketch.fixed
+    fixed = name in sketch.frame_points
     joint = len(owners) > 1 or bool(sketch.guides_of(name))
     place = sketch.places.get(name)
     edit, move = edit_refusal(sketch, name), move_refusal(sketch, name)
@@ -189,8 +189,8 @@ def _track(sketch: Sketch, wheel: Mapping[str, Any], along: Mapping[str, Any]) -
 
 def _pitch_circles(sketch: Sketch, gear: Gear) -> Iterator[dict[str, Any]]:
     """Each wheel of a gear by the point in which it turns on the carrier; none where both turn about one axis."""
-    held = sketch.fixed if gear.carrier == FRAME else sketch.links.get(gear.carrier, ())
-    of_links = [sketch.fixed if link == FRAME else sketch.links.get(link, ()) for link in gear.links]
+    held = sketch.frame_points if gear.carrier == FRAME else sketch.links.get(gear.carrier, ())
+    of_links = [sketch.frame_points if link == FRAME else sketch.links.get(link, ()) for link in gear.links]
     shafts = [next((point for point in points if point in held), "") for points in of_links]
     places = [sketch.places[shaft] for shaft in shafts if shaft in sketch.places]
     if len(places) < len(shafts):

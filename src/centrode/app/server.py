@@ -154,7 +154,7 @@ def server_application(
     lanes = Lanes(make(settings.work), make(settings.work))
 
     @contextlib.asynccontextmanager
-    async def living(_application: Starlette) -> AsyncIterator[None]:
+    async def lifespan(_application: Starlette) -> AsyncIterator[None]:
         # what computes loads its libraries while the browser opens the page
         warming = [asyncio.create_task(_warm(runner)) for runner in (lanes.quick, lanes.slow)]
         try:
@@ -166,6 +166,12 @@ def server_application(
             lanes.end()
 
     async def index(request: Request) -> Response:
+        return await opened(request, "index.html")
+
+    async def gears(request: Request) -> Response:
+        return await opened(request, "gears.html")
+
+    async def opened(request: Request, name: str) -> Response:
         said = "\n".join(_spoken_error(REFUSED, _preferred_language(request)).values())
         token, code = (request.query_params.get(key) for key in ("token", "code"))
         if not _is_own_request(settings, request):
@@ -175,7 +181,7 @@ def server_application(
             return PlainTextResponse(said, 403, HEADERS)
         # a window that is loaded again has kept the token, and its address does not hold it
         given = {"token": settings.token} if allowed else {"refused": said}
-        return _page_with(given)
+        return _page_with(given, name)
 
     async def export(request: Request) -> Response:
         if not settings.is_own_origin(request.headers.get("origin")):
@@ -214,13 +220,14 @@ def server_application(
 
     routes = [
         Route("/", index),
+        Route("/gears", gears),
         Route("/export", export, methods=["POST"]),
         Route("/page", page),
         WebSocketRoute("/socket", socket),
     ]
     if STATIC.is_dir():
         routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
-    return Starlette(routes=routes, lifespan=living)
+    return Starlette(routes=routes, lifespan=lifespan)
 
 
 async def _warm(runner: Runner) -> None:
@@ -244,10 +251,10 @@ class _OwnFiles(StaticFiles):
         return response
 
 
-def _page_with(given: Mapping[str, str]) -> Response:
-    """The page with what the server gives it."""
+def _page_with(given: Mapping[str, str], name: str) -> Response:
+    """A page with what the server gives it."""
     try:
-        page = (STATIC / "index.html").read_text("utf-8")
+        page = (STATIC / name).read_text("utf-8")
     except OSError:
         return PlainTextResponse("the page is not built", 500, HEADERS)
     content = html.escape(json.dumps(given, ensure_ascii=False))

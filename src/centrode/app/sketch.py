@@ -55,10 +55,10 @@ class Sketch:
     @property
     def draws_points(self) -> bool:
         """Whether what is drawn gets coordinates in the table of points: in a new text, and where others have them."""
-        return self.is_short_form or not (self.links or self.fixed)
+        return self.is_short_form or not (self.links or self.frame_points)
 
     @cached_property
-    def fixed(self) -> tuple[str, ...]:
+    def frame_points(self) -> tuple[str, ...]:
         """Points of the frame."""
         return tuple(name for name in entries_of(_table(self.tables, "frame").get("points")))
 
@@ -89,7 +89,7 @@ class Sketch:
         if self.document.mechanism is not None:
             mechanism = self.document.mechanism
             return tuple(dict.fromkeys((*mechanism.frame.points, *mechanism.points, *spare)))
-        named = [*self.fixed, *(point for link in self.links.values() for point in link)]
+        named = [*self.frame_points, *(point for link in self.links.values() for point in link)]
         named += [str(guide["point"]) for guide in self.guides if isinstance(guide.get("point"), str)]
         return tuple(dict.fromkeys((*named, *spare)))
 
@@ -102,7 +102,9 @@ class Sketch:
         loose = []
         for points in self.links.values():
             joined = [
-                one for one in points if len(self.owners(one)) > 1 or one in self.fixed or self.guides_of(one)
+                one
+                for one in points
+                if len(self.owners(one)) > 1 or one in self.frame_points or self.guides_of(one)
             ]
             if len(joined) < 2 and len(points) > 1:
                 loose += [one for one in points if one not in joined]
@@ -124,7 +126,7 @@ class Sketch:
     # where everything stands
 
     @cached_property
-    def _standing(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
+    def _places_and_poses(self) -> tuple[dict[str, Vector], dict[str, Pose]]:
         prepared = self.document.position
         if prepared is not None:
             at = prepared.assembled.positions
@@ -146,12 +148,12 @@ class Sketch:
     @property
     def places(self) -> dict[str, Vector]:
         """Place of each point in the initial position [m], as far as it is known."""
-        return self._standing[0]
+        return self._places_and_poses[0]
 
     @property
     def poses(self) -> dict[str, Pose]:
         """Origin [m] and angle [rad] of the axes of each link in the initial position, as far as they are known."""
-        return self._standing[1]
+        return self._places_and_poses[1]
 
     def place_of(self, value: object) -> Vector | None:
         """The place that coordinates give: in the plane [m], on the sphere a unit vector; None of what are none."""

@@ -43,7 +43,7 @@ def _sphere_words(sketch: Sketch) -> str:
 
 def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
     sphere = _sphere_words(sketch)
-    fixed, guided = name in sketch.fixed, bool(sketch.guides_of(name))
+    fixed, guided = name in sketch.frame_points, bool(sketch.guides_of(name))
     unplaced = "" if name in sketch.places else _("its place is not known: correct the description first")
     of_guide = [k for k in sketch.guides_of(name) if sketch.guides[k].get("on", FRAME) == FRAME]
     driven = guided and bool(sketch.drives_of(_guide_id(sketch, sketch.guides_of(name)[0])))
@@ -92,7 +92,7 @@ def _rows_of_link(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
     link = sketch.tables["links"][name]
     mass = number(link.get("mass"), "mass")
     path = f"links.{name}.length"
-    pivots = [point for point in sketch.links[name] if point in sketch.fixed]
+    pivots = [point for point in sketch.links[name] if point in sketch.frame_points]
     loose = [point for point in sketch.links[name] if len(sketch.owners(point)) < 2]
     drive = ""
     if not driven and not pivots and not loose:
@@ -270,7 +270,7 @@ def _ground_pivot(patch: Patch, link: str) -> None:
     """A driven link turns about a point of the frame: where it has none, its loose end becomes one."""
     sketch = patch.sketch
     points = sketch.links[link]
-    if any(point in sketch.fixed for point in points):
+    if any(point in sketch.frame_points for point in points):
         return
     loose = [point for point in points if len(sketch.owners(point)) < 2 and not sketch.guides_of(point)]
     if len(loose) == len(points) > 1:
@@ -293,7 +293,7 @@ def ensure_references(patch: Patch) -> None:
         if drive.get("relative_to", FRAME) != FRAME or link not in sketch.links:
             continue
         first = sketch.places.get(sketch.links[link][0])
-        others = [sketch.places[point] for point in sketch.fixed if point in sketch.places]
+        others = [sketch.places[point] for point in sketch.frame_points if point in sketch.places]
         if first is None or any(1e-6 < sketch.distance(first, other) < math.pi - 1e-6 for other in others):
             continue
         pole = (0.0, 0.0, 1.0) if abs(first[2]) < 0.9 else (1.0, 0.0, 0.0)

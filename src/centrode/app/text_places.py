@@ -105,7 +105,7 @@ def _statements(text: str) -> Iterator[Statement]:
             continue
         if text[offset] == "[":
             double = text.startswith("[[", offset)
-            close = _closing(text, offset, "]")
+            close = _closing_bracket(text, offset, "]")
             keys = _keys(text[offset + 1 + double : close - double])
             end = _line_end(text, close)
             table = _enter(keys, counts, double)
@@ -165,7 +165,7 @@ def _text_end(text: str, offset: int) -> int:
     return min(offset + 1, len(text))
 
 
-def _closing(text: str, offset: int, bracket: str) -> int:
+def _closing_bracket(text: str, offset: int, bracket: str) -> int:
     """Offset of the bracket that closes a heading, on its line."""
     while offset < len(text) and text[offset] != "\n":
         if text[offset] in QUOTES:

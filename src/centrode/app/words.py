@@ -22,6 +22,7 @@ WORDS: Mapping[str, str] = {
     "close": mark("Close"),
     "delete": mark("Delete"),
     "duplicate": mark("Duplicate"),
+    "join": mark("Join into one joint"),
     "mirror_upright": mark("Mirror left to right"),
     "mirror_level": mark("Mirror top to bottom"),
     "tools": mark("Tools"),
@@ -36,10 +37,13 @@ WORDS: Mapping[str, str] = {
     "mode_guide_hint": mark(
         "Drag a line to make a guide; begin it at a joint to let that joint slide along it."
     ),
-    "mode_edit_hint": mark("Drag a joint to change the lengths of its links."),
+    "mode_edit_hint": mark(
+        "Drag a joint to change the lengths of its links; drop it on another joint to make one of the two."
+    ),
     "mode_move_hint": mark("Drag a joint to move the mechanism."),
     "not_on_sphere": mark(
-        "In this description links on the sphere have arcs and angles: change them in the text; here they can be moved."
+        "In this description links on the sphere have arcs and angles: new ones are written in the text; joints are "
+        "dragged in Edit and Move."
     ),
     "fit": mark("Show everything"),
     "zoom_in": mark("Zoom in"),

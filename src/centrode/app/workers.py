@@ -158,7 +158,7 @@ class ProcessRunner:
         here: Connection
         here, there = context.Pipe()
         process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
-        with _interrupts_blocked():
+        with _block_interrupts():
             process.start()
         there.close()
         self._process, self._connection = process, here
@@ -187,7 +187,7 @@ class ProcessRunner:
 
 
 @contextmanager
-def _interrupts_blocked() -> Iterator[None]:
+def _block_interrupts() -> Iterator[None]:
     """What this thread starts meanwhile never meets Ctrl-C, not even while it loads its libraries."""
     if not hasattr(signal, "pthread_sigmask"):
         yield

@@ -19,7 +19,7 @@ from centrode.model.files import kind_at, value_at, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import Problem, csv_separator, nearest, read_file, read_name, value_text
-from centrode.model.units import read_quantity, scaled, unit_factor
+from centrode.model.units import read_quantity, scale_value, unit_factor
 
 # Columns of a table of variants: which numbers of a mechanism a header names.
 #
@@ -417,7 +417,7 @@ def _value(column: VariantColumn, given: object, where: str) -> float:
         # a cell of a workbook may be a number: its text is what is written there
         text = repr(given) if isinstance(given, int | float) and not isinstance(given, bool) else given
         return read_quantity(text, column.kind, where, refuses_bare=column.refuses_bare)
-    return scaled(read_quantity(given, "ratio", where), column.factor)
+    return scale_value(read_quantity(given, "ratio", where), column.factor)
 
 
 def _changed(column: VariantColumn, text: str, where: str, mechanism: Mechanism, path: str) -> float | None:

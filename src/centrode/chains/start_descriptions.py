@@ -19,8 +19,9 @@ from centrode.chains.kinematic_chains import Joint, KinematicChain
 from centrode.chains.planar_drawings import ChainSketch, chain_sketch
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.files import in_short_lines, parse_mechanism
+from centrode.model.files import parse_mechanism
 from centrode.model.mechanism import Mechanism
+from centrode.model.toml import in_short_lines
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

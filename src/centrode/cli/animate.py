@@ -16,7 +16,7 @@ from centrode.cli.instants import echo_values
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
-from centrode.topics.registry import READ_PAIRS_OF_BODIES
+from centrode.topics.option_values import READ_PAIRS_OF_BODIES
 
 if TYPE_CHECKING:
     from centrode.animation.animate import Shown

@@ -30,11 +30,11 @@ _options, _writing, _outline = (
 )
 
 
-@click.command(help=mark("Write everything about a mechanism or a cam as one document."))
+@click.command(help=mark("Write everything about a mechanism, a cam or gears as one document."))
 @click.argument(
     "description",
     metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("A TOML file, or the name of a built-in mechanism or cam."),
+    help=mark("A TOML file, or the name of a built-in mechanism, cam, pair or train of gears."),
 )
 @click.option(
     "--out",
@@ -134,7 +134,7 @@ def report(
     greatest_change: float | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
-    described = library.load_either(description)
+    described = library.load_description(description)
     folder, name, kinds = _place(out, description, formats)
     _writing().check_formats(kinds)
     with about(description):

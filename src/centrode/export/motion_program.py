@@ -40,8 +40,7 @@ from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet
 from centrode.numerics.source_languages import HELPER_NAMES, RecordFunction
-from centrode.page.program import is_positive, lengths_and_places, mechanism_numbers, mechanism_variables
-from centrode.page.tracing import (
+from centrode.page.plan_trace import (
     HALF,
     RADICAND,
     PageTrace,
@@ -53,6 +52,7 @@ from centrode.page.tracing import (
     turns_of,
     untraced_drive,
 )
+from centrode.page.program import is_positive, lengths_and_places, mechanism_numbers, mechanism_variables
 from centrode.quantities import QUANTITIES
 from centrode.structure.dimensions import dimensions_of
 

@@ -12,10 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike, NDArray
 
 from centrode.gears.involutes import Array
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.shift_fields import ShiftFields, shift_fields
+from centrode.numerics.search import interpolated_roots
 
 LEAST_CONTACT_RATIO = 1.2
 LEAST_TIP_THICKNESS = 0.25
@@ -67,47 +69,51 @@ class BlockingContour:
 
 
 def margins_of(pair: PairGeometry) -> dict[str, float]:
-    """How far a pair is from each curve of the contour: positive where that is in order.
+    """How far a pair is from each curve of the contour, by `margins_at` its shifts."""
+    return {name: float(margin) for name, margin in margins_at(pair, *pair.shifts).items()}
+
+
+def margins_at(pair: PairGeometry, first: ArrayLike, second: ArrayLike) -> dict[str, Array]:
+    """How far a pair with shifts (...) is from each curve of the contour: positive where that is in order.
 
     That of the mesh is inv(alpha_w), which a mesh without play requires to be positive; where it is not, the others are
     NaN. Margins of undercut are shifts, those of fillets tangents of pressure angles, those of the thickness of
     tips modules, that of tips that pass each other an angle, those of the contact ratio its excess over the bound.
     """
-    mesh = pair.working_involute
-    if math.isnan(pair.working_angle):
-        return {**dict.fromkeys(CURVES, math.nan), "mesh": mesh}
-    first, second = pair.wheels
-    module = pair.module
-    ratio = pair.contact_ratio
-    found = {"mesh": mesh, "contact_ratio_1": ratio - 1, "contact_ratio_1.2": ratio - LEAST_CONTACT_RATIO}
-    for number, wheel in ((1, first), (2, second)):
-        found[f"undercut_{number}"] = wheel.shift - wheel.least_shift if wheel.generated else 1.0
-        gap = math.tan(wheel.active_pressure) - math.tan(wheel.flank_pressure) if wheel.generated else 1.0
-        found[f"interference_{number}"] = gap
-        thickness = wheel.tip_thickness / module
+    fields = shift_fields(pair, first, second)
+    found = {
+        "contact_ratio_1": fields.contact_ratio - 1,
+        "contact_ratio_1.2": fields.contact_ratio - LEAST_CONTACT_RATIO,
+        "tips": fields.tips,
+    }
+    for number in (1, 2):
+        found[f"undercut_{number}"] = fields.above_undercut[number - 1]
+        found[f"interference_{number}"] = fields.above_fillet[number - 1]
+        thickness = fields.tip_thickness[number - 1]
         found[f"pointed_{number}"] = thickness
         found[f"tip_0.25_{number}"] = thickness - LEAST_TIP_THICKNESS
         found[f"tip_0.4_{number}"] = thickness - 0.4
-    found["tips"] = min(pair.tips_clear, 1.0)
     # Without an involute at a tip there is neither contact nor thickness: that blocks too.
-    blocked = {name: found[name] if math.isfinite(found[name]) else -1.0 for name in found}
-    return {name: blocked.get(name, math.nan) for name in CURVES[:-1]} | {
-        "equal_sliding": sliding_difference(pair)
-    }
+    margins = {name: np.where(np.isfinite(margin), margin, -1.0) for name, margin in found.items()}
+    margins["equal_sliding"] = sliding_difference(fields)
+    meshes = fields.mesh >= 0
+    kept = {name: np.where(meshes, margin, math.nan) for name, margin in margins.items()}
+    return {"mesh": fields.mesh, **{name: kept[name] for name in CURVES[1:]}}
 
 
-def sliding_difference(pair: PairGeometry) -> float:
+def sliding_difference(fields: ShiftFields) -> Array:
     """How much greater the specific sliding of the pinion is than that of the wheel, each where it is greatest.
 
     It is measured by the arc tangent, which stays bounded where sliding does not, as at a base circle.
     """
-    first, second = (wheel.sliding for wheel in pair.wheels)
-    return math.atan(_size(first)) - math.atan(_size(second))
+    first, second = (np.arctan(sliding_size(sliding)) for sliding in fields.sliding)
+    return np.asarray(first - second)
 
 
-def _size(sliding: float) -> float:
+def sliding_size(sliding: Array) -> Array:
+    """The size of the greatest sliding of a wheel (...)."""
     # Beyond the base circle sliding turns positive through infinity: it is worse there than any finite value.
-    return abs(sliding) if sliding <= 0 else math.inf
+    return np.where(sliding <= 0, np.abs(sliding), np.where(np.isnan(sliding), math.nan, math.inf))
 
 
 def with_shifts(pair: PairGeometry, first: float, second: float) -> PairGeometry:
@@ -136,9 +142,8 @@ def blocking_contour(
     low, high = first or _default_range(pair, 0)
     below, above = second or _default_range(pair, 1)
     across, up = np.linspace(low, high, nodes), np.linspace(below, above, nodes)
-    grid = [[margins_of(with_shifts(pair, float(x), float(y))) for y in up] for x in across]
-    margins = {name: np.array([[node[name] for node in row] for row in grid]) for name in CURVES}
-    curves = {name: _curve(pair, name, across, up, margins[name]) for name in CURVES}
+    margins = margins_at(pair, across[:, None], up[None, :])
+    curves = _curves(pair, across, up, margins)
     return BlockingContour(pair, across, up, margins, curves)
 
 
@@ -152,48 +157,75 @@ def _default_range(pair: PairGeometry, number: int) -> tuple[float, float]:
 
 Place = tuple[float, float]
 Edge = tuple[int, int, int]
+Whole = NDArray[np.intp]
 
 
-def _curve(pair: PairGeometry, name: str, across: Array, up: Array, margin: Array) -> Array:
-    """Where a margin vanishes: zeros on the lines of the grid in both directions, joined within its cells."""
-    found: dict[Edge, Place] = {}
-    for row, column in np.ndindex(margin.shape):
-        for along, (other_row, other_column) in enumerate(((row + 1, column), (row, column + 1))):
-            if other_row < len(across) and other_column < len(up):
-                ends = (margin[row, column], margin[other_row, other_column])
-                if (
-                    math.isfinite(ends[0])
-                    and math.isfinite(ends[1])
-                    and (ends[0] < 0) != (ends[1] < 0)
-                    and (place := _zero(pair, name, across, up, (row, column, along)))
-                ):
-                    found[row, column, along] = place
-    parts = _chains(_neighbours(found, margin))
-    between = [(math.nan, math.nan)]
-    places = [place for part in parts for place in between + [found[edge] for edge in part]]
-    return np.array(places[1:]).reshape(-1, 2)
+def _curves(pair: PairGeometry, across: Array, up: Array, margins: Mapping[str, Array]) -> dict[str, Array]:
+    """Where each margin vanishes: zeros on the lines of the grid in both directions, joined within its cells."""
+    edges = {name: _crossed_edges(margins[name]) for name in CURVES}
+    places = _zeros(pair, across, up, edges)
+    curves = {}
+    for name in CURVES:
+        found = {
+            edge: place
+            for edge, place in zip(map(tuple, edges[name].tolist()), places[name].tolist(), strict=True)
+            if not math.isnan(place[0])
+        }
+        between = [(math.nan, math.nan)]
+        parts = _chains(_neighbours(found, margins[name]))
+        joined = [place for part in parts for place in between + [found[edge] for edge in part]]
+        curves[name] = np.array(joined[1:]).reshape(-1, 2)
+    return curves
 
 
-def _zero(pair: PairGeometry, name: str, across: Array, up: Array, edge: Edge) -> Place | None:
-    """Where a margin vanishes between two nodes, to rounding; None where it jumps there."""
-    row, column, along = edge
+def _crossed_edges(margin: Array) -> Whole:
+    """Edges (k, 3) of the grid over which a margin changes its sign: row, column, and 0 along x_1, 1 along x_2."""
+    found = []
+    below, known = margin < 0, np.isfinite(margin)
+    for along in (0, 1):
+        ahead, behind = (slice(1, None), slice(None, -1)) if along == 0 else (np.s_[:, 1:], np.s_[:, :-1])
+        crossed = (below[ahead] != below[behind]) & known[ahead] & known[behind]
+        rows, columns = np.nonzero(crossed)
+        found.append(np.stack([rows, columns, np.full(rows.shape, along)], axis=-1))
+    return np.concatenate(found)
 
-    def margin(value: float) -> float:
-        place = (float(across[row]), value) if along else (value, float(up[column]))
-        return margins_of(with_shifts(pair, *place))[name]
 
-    line, start = (up, column) if along else (across, row)
-    root = float(brentq(margin, float(line[start]), float(line[start + 1]), xtol=1e-13))
+def _zeros(
+    pair: PairGeometry, across: Array, up: Array, edges: Mapping[str, Whole]
+) -> dict[str, NDArray[np.float64]]:
+    """Places (k, 2) on edges where a margin vanishes, to rounding; NaN where it jumps there. All curves at once."""
+    listed = np.concatenate([edges[name] for name in CURVES])
+    which = np.concatenate([np.full(len(edges[name]), number) for number, name in enumerate(CURVES)])
+    rows, columns, along = listed.T
+    low = np.where(along, up[columns], across[rows])
+    high = np.where(
+        along, up[np.minimum(columns + 1, len(up) - 1)], across[np.minimum(rows + 1, len(across) - 1)]
+    )
+
+    def at(places: Array) -> tuple[Array, Array]:
+        return np.where(along, across[rows], places), np.where(along, places, up[columns])
+
+    def margin(places: Array) -> Array:
+        margins = margins_at(pair, *at(places))
+        return np.choose(which, [margins[name] for name in CURVES])
+
+    roots = interpolated_roots(margin, low, high)
     # Sliding beyond a base circle changes at once from one side to the other: that is no zero.
-    if not abs(margin(root)) < 1e-6:
-        return None
-    return (float(across[row]), root) if along else (root, float(up[column]))
+    roots = np.where(np.abs(margin(roots)) < 1e-6, roots, math.nan)
+    first, second = at(roots)
+    both = np.where(np.isnan(roots)[:, None], math.nan, np.stack([first, second], axis=-1))
+    return {name: both[which == number] for number, name in enumerate(CURVES)}
 
 
 def _neighbours(found: Mapping[Edge, Place], margin: Array) -> dict[Edge, list[Edge]]:
     """Which edges the curve joins within a cell: its two, or of four those that leave the middle on one side."""
     neighbours: dict[Edge, list[Edge]] = {edge: [] for edge in found}
-    for row, column in np.ndindex(margin.shape[0] - 1, margin.shape[1] - 1):
+    cells = {
+        cell
+        for row, column, along in found
+        for cell in ((row, column), (row, column - 1) if along == 0 else (row - 1, column))
+    }
+    for row, column in sorted(cells):
         bottom, left = (row, column, 0), (row, column, 1)
         top, right = (row, column + 1, 0), (row + 1, column, 1)
         crossed = [edge for edge in (bottom, right, top, left) if edge in found]

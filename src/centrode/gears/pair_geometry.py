@@ -280,7 +280,7 @@ class GearWheel:
         return not math.isfinite(self.teeth)
 
     @property
-    def generated(self) -> bool:
+    def is_generated(self) -> bool:
         """Whether the reference rack generates it: an external wheel."""
         return not self.internal and not self.is_rack
 
@@ -379,21 +379,21 @@ class GearWheel:
     @cached_property
     def least_shift(self) -> float:
         """X_min, below which the rack undercuts; NaN where no rack generates the wheel."""
-        if not self.generated:
+        if not self.is_generated:
             return math.nan
         return least_shift(self.pair.rack, self.teeth, self.pair.helix_angle)
 
     @cached_property
     def least_teeth(self) -> float:
         """Z_min, below which the rack undercuts a wheel of this shift; NaN where no rack generates the wheel."""
-        if not self.generated:
+        if not self.is_generated:
             return math.nan
         return least_teeth(self.pair.rack, self.shift, self.pair.helix_angle)
 
     @property
     def undercut(self) -> bool:
         """Whether the rack cuts into the involute."""
-        return self.generated and self.shift < self.least_shift
+        return self.is_generated and self.shift < self.least_shift
 
     @cached_property
     def active_end(self) -> float:
@@ -416,7 +416,7 @@ class GearWheel:
 
         The straight flank of a usual rack ends (h_a* - x) m_n below the pitch circle (GOST 16532).
         """
-        if not self.generated:
+        if not self.is_generated:
             return math.nan
         angle = self.pair.transverse.pressure_angle
         depth = (self.pair.rack.straight - self.shift) * self.pair.module
@@ -425,7 +425,7 @@ class GearWheel:
     @property
     def interferes(self) -> bool:
         """Whether the other wheel's tip reaches below the involute into the fillet."""
-        return self.generated and not math.tan(self.active_pressure) >= math.tan(self.flank_pressure)
+        return self.is_generated and not math.tan(self.active_pressure) >= math.tan(self.flank_pressure)
 
     @property
     def tip_inside_base(self) -> bool:

@@ -6,18 +6,24 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq, minimize
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize
 
 from centrode.errors import InputError, MotionError
 from centrode.gears.blocking_contour import (
     BLOCKING,
+    margins_at,
     margins_of,
     sliding_difference,
+    sliding_size,
     with_shifts,
 )
+from centrode.gears.involutes import Array
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.shift_fields import ShiftFields, shift_fields
 from centrode.geometry.involute import involute
 from centrode.locale import _, mark
+from centrode.numerics.search import interpolated_roots
 
 _NO_SHIFTS = mark("no shifts of these wheels keep contact ratio, tips and flanks within their bounds")
 GRID = 41
@@ -75,7 +81,7 @@ def chosen_shifts(
             plain = _without_undercut(pair, None)
             total = plain[1] + pair.sign * plain[0]
         return _equal_sliding(pair, total)
-    goal = _greatest_sliding if purpose == "least sliding" else _flatness
+    goal = _greatest_sliding if purpose == "least sliding" else _curvature
     return _best(pair, goal, total)
 
 
@@ -109,17 +115,17 @@ def _without_undercut(pair: PairGeometry, total: float | None) -> tuple[float, f
 def _equal_sliding(pair: PairGeometry, total: float) -> tuple[float, float]:
     """On the line of a sum: sliding of the pinion falls with its own shift, that of the wheel rises."""
 
-    def difference(first: float) -> float:
-        return sliding_difference(with_shifts(pair, *shifts_of_sum(pair, first, total)))
+    def difference(first: Array) -> Array:
+        return sliding_difference(shift_fields(pair, first, total - pair.sign * first))
 
     nodes = np.linspace(-MOST_SHIFT, MOST_SHIFT, 4 * GRID)
-    values = [difference(float(node)) for node in nodes]
-    for low, high, left, right in zip(nodes, nodes[1:], values, values[1:], strict=False):
-        if math.isfinite(left) and math.isfinite(right) and left > 0 >= right:
-            first = float(brentq(difference, float(low), float(high), xtol=1e-14))
-            shifts = shifts_of_sum(pair, first, total)
-            if abs(difference(first)) < 1e-9 and _is_possible(with_shifts(pair, *shifts)):
-                return shifts
+    values = difference(nodes)
+    falls = np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0) & np.isfinite(values[:-1] + values[1:]))
+    roots = interpolated_roots(difference, nodes[falls], nodes[falls + 1])
+    for first in roots[np.abs(difference(roots)) < 1e-9].tolist():
+        shifts = shifts_of_sum(pair, first, total)
+        if _is_possible(with_shifts(pair, *shifts)):
+            return shifts
     what = _("no shifts of this sum, {total:.6g}, slide equally and can work")
     raise MotionError("shifts", what.format(total=total))
 
@@ -129,65 +135,64 @@ def _is_possible(pair: PairGeometry) -> bool:
     return all(margins[name] > -1e-9 for name in BLOCKING)
 
 
-def _greatest_sliding(pair: PairGeometry) -> float:
-    sizes = [abs(wheel.sliding) if wheel.sliding <= 0 else math.inf for wheel in pair.wheels]
-    return max(sizes)
+def _greatest_sliding(fields: ShiftFields) -> Array:
+    return np.asarray(np.maximum(*(sliding_size(sliding) for sliding in fields.sliding)))
 
 
-def _flatness(pair: PairGeometry) -> float:
+def _curvature(fields: ShiftFields) -> Array:
     """Minus the relative radius of curvature at the pitch point, in modules."""
-    radius = pair.pitch_curvature_radius
-    return -float(1 / (1 / radius + pair.sign / pair.other_curvature_radius(radius))) / pair.module
+    return -fields.flatness
 
 
-def _bounds(pair: PairGeometry) -> list[float]:
-    """Margins that a chosen pair keeps: at least zero."""
-    margins = margins_of(pair)
-    names = (
-        "undercut_1",
-        "undercut_2",
-        "interference_1",
-        "interference_2",
-        "tip_0.25_1",
-        "tip_0.25_2",
-        "contact_ratio_1.2",
-    )
-    return [margins[name] if math.isfinite(margins[name]) else -1.0 for name in names]
+BOUNDS = (
+    "undercut_1",
+    "undercut_2",
+    "interference_1",
+    "interference_2",
+    "tip_0.25_1",
+    "tip_0.25_2",
+    "contact_ratio_1.2",
+)
+"""Margins that a chosen pair keeps."""
+
+
+def _bounds(pair: PairGeometry, first: ArrayLike, second: ArrayLike) -> Array:
+    """Those margins (k, ...) over shifts (...): at least zero."""
+    margins = margins_at(pair, first, second)
+    return np.stack([np.nan_to_num(margins[name], nan=-1.0) for name in BOUNDS])
 
 
 def _best(
-    pair: PairGeometry, goal: Callable[[PairGeometry], float], total: float | None
+    pair: PairGeometry, goal: Callable[[ShiftFields], Array], total: float | None
 ) -> tuple[float, float]:
     """The best shifts within the bounds: the best node of a grid, polished."""
 
-    def shifts_at(free: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[float, float]:
-        return (
-            shifts_of_sum(pair, float(free[0]), total)
-            if total is not None
-            else (float(free[0]), float(free[1]))
-        )
+    def shifts_at(free: Array) -> tuple[Array, Array]:
+        """Both shifts (...) by what is free of them, (1, ...) or (2, ...)."""
+        return (free[0], free[1]) if total is None else (free[0], total - pair.sign * free[0])
+
+    def value_at(free: Array) -> Array:
+        return goal(shift_fields(pair, *shifts_at(free)))
 
     line = np.linspace(LEAST_SHIFT, MOST_SHIFT, GRID)
-    nodes = (
-        [np.array([x]) for x in line] if total is not None else [np.array([x, y]) for x in line for y in line]
-    )
-    kept = [
-        (goal(at), node) for node in nodes if min(_bounds(at := with_shifts(pair, *shifts_at(node)))) >= 0
-    ]
-    if not kept:
+    mesh = np.meshgrid(line, line, indexing="ij") if total is None else (line,)
+    nodes = np.stack([axis.ravel() for axis in mesh])
+    kept = nodes[:, (_bounds(pair, *shifts_at(nodes)) >= 0).all(axis=0)]
+    if not kept.size:
         raise MotionError("shifts", _(_NO_SHIFTS))
-    value, start = min(kept, key=lambda one: one[0])
+    values = value_at(kept)
+    start = kept[:, np.argmin(values)]
     step = float(line[1] - line[0])
     polished = minimize(
-        lambda free: goal(with_shifts(pair, *shifts_at(free))),
+        lambda free: float(value_at(free)),
         start,
         method="SLSQP",
         bounds=[
             (max(LEAST_SHIFT, entry - 1.5 * step), min(MOST_SHIFT, entry + 1.5 * step)) for entry in start
         ],
-        constraints={"type": "ineq", "fun": lambda free: _bounds(with_shifts(pair, *shifts_at(free)))},
+        constraints={"type": "ineq", "fun": lambda free: _bounds(pair, *shifts_at(free))},
         options={"maxiter": 200, "ftol": 1e-13},
     )
-    if min(_bounds(with_shifts(pair, *shifts_at(polished.x)))) >= -1e-9 and polished.fun <= value:
-        return shifts_at(polished.x)
-    return shifts_at(start)
+    good = _bounds(pair, *shifts_at(polished.x)).min() >= -1e-9 and polished.fun <= values.min()
+    first, second = shifts_at(polished.x if good else start)
+    return float(first), float(second)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 from centrode.errors import InputError
@@ -18,6 +20,10 @@ USUAL_SPEED = math.tau
 """Of what drives where none is given [rad/s]: a turn in a second."""
 MOST_TURNS = 200
 """Of what drives, over which a train alone is shown."""
+DRIVE = "drive"
+"""What a table of a load may be over, and one of a moment is where it says nothing."""
+MOST_TURNS_OF_CYCLE = 60
+"""Turns of the drive that steady motion looks for a cycle in."""
 AXIS, CRANK_AXIS, CRANK = "M", "N", "crank"
 
 
@@ -96,8 +102,9 @@ def train_mechanism(results: GearTrainResults, machine: MechanismSource | None =
     machine : Mechanism, or the name of its file or of a built-in one
         With one drive, which turns a link about a point of the frame at a constant speed. The pair behind the train
         turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the crank
-        keeps its sense. Range and instants are converted to the motor. `[machine]` is omitted, as wheels and planets
-        hardly ever return together: a cycle is that of the machine without the train.
+        keeps its sense. Range, instants, loads by the angle of the crank and `[machine]` are converted to the motor:
+        its mean speed and the ratios of its shafts. `[machine]` is omitted where the crank returns only after more
+        than 60 turns of the motor: a cycle has whole turns of the drive.
 
     Raises
     ------
@@ -168,8 +175,58 @@ def _machine_with_train(results: GearTrainResults, mechanism: Mechanism) -> Mech
         speed = math.copysign(results.input_speed / abs(ratio), speed)
     tables["drives"] = [{"link": driver, "start": 0.0, "speed": speed * ratio}]
     _convert_study(tables, start, ratio)
-    tables.pop("machine", None)
+    tables["loads"] = [_load_of_motor(load, start, ratio) for load in tables.get("loads", [])]
+    if "machine" in tables:
+        if _motor_turns(results) <= MOST_TURNS_OF_CYCLE:
+            tables["machine"] = _machine_of_motor(tables["machine"], start, ratio)
+        else:
+            del tables["machine"]
     return mechanism_from(tables)
+
+
+def _motor_turns(results: GearTrainResults) -> int:
+    """Whole turns of the motor after which the crank is where it was."""
+    driving, driven = results.gear_train.pair_behind or (1, 1)
+    return abs((results.chosen.ratio * Fraction(driven, driving)).numerator)
+
+
+def _formula_of_motor(formula: str, start: float, ratio: float, speed: str = "") -> str:
+    """A formula of the crank's angle q, and of its speed where that has a letter, as one of the motor's."""
+    formula = re.sub(r"\bq\b", f"({start!r} + q/({ratio!r}))", formula)
+    return re.sub(rf"\b{speed}\b", f"({speed}/({ratio!r}))", formula) if speed else formula
+
+
+def _load_of_motor(load: dict[str, Any], start: float, ratio: float) -> dict[str, Any]:
+    """A load whose formulas of the crank's angle are such of the motor's."""
+    if "table" in load and load.get("over", DRIVE if load.get("kind") == "torque" else "") == DRIVE:
+        what = _("a load of the machine has a table over the angle of its crank")
+        raise InputError("machine", what, _("give it as a formula of q, or over a displacement"))
+    changed = {}
+    for key in ("vector", "value"):
+        value = load.get(key)
+        if isinstance(value, list):
+            changed[key] = [
+                _formula_of_motor(one, start, ratio) if isinstance(one, str) else one for one in value
+            ]
+        elif isinstance(value, str):
+            changed[key] = _formula_of_motor(value, start, ratio)
+    return load | changed
+
+
+def _machine_of_motor(machine: dict[str, Any], start: float, ratio: float) -> dict[str, Any]:
+    """[machine] with speeds and ratios over the motor in place of the crank."""
+    size = abs(ratio)
+    made = dict(machine)
+    if "mean_speed" in made:
+        made["mean_speed"] = made["mean_speed"] * size
+    made["shafts"] = [
+        shaft | {"ratio": shaft.get("ratio", 1.0) / size} for shaft in machine.get("shafts", [])
+    ]
+    wheel = machine.get("flywheel", {})
+    made["flywheel"] = wheel | {"ratio": wheel.get("ratio", 1.0) / size}
+    if "driving" in made:
+        made["driving"] = _formula_of_motor(made["driving"], start, ratio, "v")
+    return made
 
 
 def _crank_of(mechanism: Mechanism, tables: dict[str, Any]) -> tuple[dict[str, Any], str, str]:

@@ -91,7 +91,7 @@ def find_trains(scheme: str, bounds: TrainBounds, driver: Driver | None = None) 
     return _ordinary_trains(bounds, 1 if scheme == "one pair" else 2)
 
 
-def ranked(trains: list[Train]) -> list[Train]:
+def rank_by_size(trains: list[Train]) -> list[Train]:
     """Trains by size; those of one size by their tooth numbers."""
     return sorted(trains, key=lambda train: (train.diameter, train.teeth))
 
@@ -218,7 +218,7 @@ def _carrier_series(bounds: TrainBounds, driver: Driver) -> FoundTrains:
 
 
 def _list_of(trains: list[Train], nearest: Train | None, more: bool) -> FoundTrains:
-    listed = ranked(trains)
+    listed = rank_by_size(trains)
     more = more or len(listed) > MOST_TRAINS
     return FoundTrains(tuple(listed[:MOST_TRAINS]), None if listed else nearest, more)
 

@@ -6,17 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import tomli_w
-
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import Cam
-from centrode.model.files import in_short_lines
+from centrode.model.description_files import DescriptionFiles
 from centrode.model.follower_cam import PlateCam
-from centrode.model.links import part_tables
-from centrode.model.reading import read_file
-from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
-from centrode.model.values import BareAngles
 
 AnyCam: TypeAlias = Cam | PlateCam
 """A cam by the curvature of its roller's path, or by the lift of its follower."""
@@ -36,8 +30,7 @@ def read_cam(path: str | Path) -> AnyCam:
     >>> ct.read_cam("cam.toml").title
     'Valve cam'
     """
-    path = Path(path)
-    return parse_cam(read_file(path), path.name, path.parent)
+    return CAMS.read(path)
 
 
 def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
@@ -62,24 +55,11 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     >>> ct.parse_cam(ct.cam_text(cam)) == cam
     True
     """
-    tables = toml_tables(text, where)
-    return cam_from(tables, where, folder, bare_angles_of(tables))
-
-
-def cam_from(
-    mapping: Mapping[str, Any],
-    where: str = "",
-    folder: Path | None = None,
-    bare_angles: BareAngles = "radians",
-) -> AnyCam:
-    """The cam described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    kind: type[Cam] | type[PlateCam] = kind_of_cam(mapping, where)
-    return parse_tables(kind, mapping, where, folder, bare_angles)
+    return CAMS.parse(text, where, folder)
 
 
 def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type[PlateCam]:
-    """Which kind of cam tables describe; raises InputError that starts with `where` for those of a linkage."""
-    refuse_other_kind(mapping, "cam", where)
+    """Which kind of cam tables describe; raises InputError that starts with `where` where they mix both."""
     given = [key for key in _OF_FOLLOWER if key in mapping]
     if not given:
         return Cam
@@ -93,6 +73,10 @@ def kind_of_cam(mapping: Mapping[str, Any], where: str = "") -> type[Cam] | type
         )
         raise InputError(where, told, _("keep one of them"))
     return PlateCam
+
+
+CAMS: DescriptionFiles[AnyCam] = DescriptionFiles("cam", kind_of_cam)
+"""Cams in files."""
 
 
 def require_curvature_cam(cam: AnyCam) -> Cam:
@@ -132,7 +116,4 @@ def cam_text(cam: AnyCam) -> str:
     >>> print(ct.cam_text(ct.example("valve-cam")).splitlines()[1])
     kind = "cam"
     """
-    tables = part_tables(cam)
-    if cam.display.refuses_bare_angles:
-        tables = with_unit(part_tables(cam_from(tables, bare_angles="marked")))
-    return in_short_lines(tomli_w.dumps(tables))
+    return CAMS.text(cam)

@@ -16,13 +16,14 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import Cam, vary_cam
 from centrode.model.description import Description
+from centrode.model.description_files import DescriptionFiles
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.load_paths import ROOMS, kind_of_place, place_of_number, with_number
 from centrode.model.mechanism import Mechanism
 from centrode.model.number_paths import spot_of_path, words_of_path
-from centrode.model.reading import read_file, two_points
-from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
+from centrode.model.reading import two_points
+from centrode.model.toml import in_short_lines, with_unit
 from centrode.model.values import BareAngles, Radians
 
 AnyDescription = TypeVar("AnyDescription", Mechanism, Cam, PlateCam)
@@ -40,7 +41,6 @@ def document(mechanism: Description) -> dict[str, Any]:
 
 
 _HEADING = re.compile(r"^(\[\[?)", re.MULTILINE)
-_SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
 
 
 def read_mechanism(path: str | Path) -> Mechanism:
@@ -54,8 +54,7 @@ def read_mechanism(path: str | Path) -> Mechanism:
     >>> ct.read_mechanism("bars.toml").title
     'Crank-rocker four-bar linkage'
     """
-    path = Path(path)
-    return parse_mechanism(read_file(path), path.name, path.parent)
+    return MECHANISMS.read(path)
 
 
 def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> Mechanism:
@@ -80,8 +79,7 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     >>> ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
     True
     """
-    tables = toml_tables(text, where)
-    return mechanism_from(tables, where, folder, bare_angles_of(tables))
+    return MECHANISMS.parse(text, where, folder)
 
 
 def mechanism_from(
@@ -91,8 +89,7 @@ def mechanism_from(
     bare_angles: BareAngles = "radians",
 ) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    refuse_other_kind(mapping, "linkage", where)
-    return parse_tables(Mechanism, mapping, where, folder, bare_angles)
+    return MECHANISMS.from_tables(mapping, where, folder, bare_angles)
 
 
 def mechanism_text(mechanism: Mechanism) -> str:
@@ -106,12 +103,24 @@ def mechanism_text(mechanism: Mechanism) -> str:
     >>> print(ct.mechanism_text(ct.example("crank-rocker"))[:40])
     title = "Crank-rocker four-bar linkage"
     """
-    tables = document(mechanism)
-    if mechanism.display.refuses_bare_angles:
-        for *parents, key in _places_of_angles(_ByForm(tables)):
-            container = reduce(getitem, parents, tables)
-            container[key] = with_unit(Radians(container[key]))
-    return in_short_lines("\n".join(_sections(tables)))
+    return MECHANISMS.text(mechanism)
+
+
+class _MechanismFiles(DescriptionFiles[Mechanism]):
+    """Mechanisms as files: their tables one below the other, each with its heading."""
+
+    def text(self, described: Mechanism) -> str:
+        """The mechanism as TOML in SI, without defaults."""
+        tables = document(described)
+        if described.display.refuses_bare_angles:
+            for *parents, key in _places_of_angles(_ByForm(tables)):
+                container = reduce(getitem, parents, tables)
+                container[key] = with_unit(Radians(container[key]))
+        return in_short_lines("\n".join(_sections(tables)))
+
+
+MECHANISMS = _MechanismFiles("linkage", lambda _tables, _where: Mechanism)
+"""Mechanisms in files."""
 
 
 class _ByForm:
@@ -169,15 +178,6 @@ def _sections(tables: Mapping[str, Any]) -> Iterator[str]:
 
 def _is_tables(value: object) -> bool:
     return isinstance(value, list | tuple) and bool(value) and all(isinstance(entry, dict) for entry in value)
-
-
-def in_short_lines(text: str) -> str:
-    """A text of TOML with short lists in one line each."""
-    return _SHORT_LIST.sub(_in_one_line, text)
-
-
-def _in_one_line(match: re.Match[str]) -> str:
-    return "[" + ", ".join(line.strip().removesuffix(",") for line in match.group(1).splitlines()) + "]"
 
 
 # Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y,

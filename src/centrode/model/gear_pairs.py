@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import PlainValidator, model_validator
@@ -12,6 +10,7 @@ from pydantic import PlainValidator, model_validator
 from centrode.geometry.involute import involute, pressure_angle_of
 from centrode.locale import _
 from centrode.model.cam import whole
+from centrode.model.description_files import DescriptionFiles
 from centrode.model.reading import (
     KEY,
     DescriptionPart,
@@ -19,13 +18,10 @@ from centrode.model.reading import (
     choice,
     likely,
     nearest,
-    read_file,
     value_text,
 )
-from centrode.model.settings import Display
-from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables
+from centrode.model.settings import Display, GearReportWishes
 from centrode.model.values import (
-    BareAngles,
     Flag,
     Text,
     angular_speed,
@@ -173,6 +169,8 @@ class GearPair(DescriptionPart):
     pin : diameter for the dimension over pins [m]; 1.7 modules by default
     speed : of the pinion [rad/s]
     moment : on the pinion [N m]
+    samples : places along the line of action
+    report : GearReportWishes
 
     Raises
     ------
@@ -201,6 +199,7 @@ class GearPair(DescriptionPart):
     speed: Annotated[float, PlainValidator(angular_speed)] | None = None
     moment: Annotated[float, quantity("torque", not_negative)] | None = None
     samples: Annotated[int, whole(2, 10_000)] = 101
+    report: GearReportWishes = GearReportWishes()
 
     if TYPE_CHECKING:
 
@@ -271,24 +270,5 @@ class GearPair(DescriptionPart):
         return self
 
 
-def read_gear_pair(path: str | Path) -> GearPair:
-    """The pair described in a TOML file; raises InputError that says where it is wrong."""
-    path = Path(path)
-    return parse_gear_pair(read_file(path), path.name, path.parent)
-
-
-def parse_gear_pair(text: str, where: str = "", folder: Path | None = None) -> GearPair:
-    """The pair described in a text of TOML; `where` is what messages call it. Raises InputError."""
-    tables = toml_tables(text, where)
-    return gear_pair_from(tables, where, folder, bare_angles_of(tables))
-
-
-def gear_pair_from(
-    mapping: Mapping[str, Any],
-    where: str = "",
-    folder: Path | None = None,
-    bare_angles: BareAngles = "radians",
-) -> GearPair:
-    """The pair described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    refuse_other_kind(mapping, KIND, where)
-    return parse_tables(GearPair, mapping, where, folder, bare_angles)
+GEAR_PAIRS = DescriptionFiles(KIND, lambda _tables, _where: GearPair)
+"""Pairs of gears in files."""

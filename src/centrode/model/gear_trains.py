@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 
-import tomli_w
 from pydantic import PlainValidator, model_validator
 
 from centrode.locale import _
 from centrode.model.cam import whole
-from centrode.model.files import in_short_lines
-from centrode.model.links import part_tables
-from centrode.model.reading import KEY, DescriptionPart, Problem, choice, read_file, value_text
-from centrode.model.settings import Display
-from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables, with_unit
-from centrode.model.values import BareAngles, Text, angular_speed, positive, quantity, si
+from centrode.model.description_files import DescriptionFiles
+from centrode.model.reading import KEY, DescriptionPart, Problem, choice, value_text
+from centrode.model.settings import Display, GearReportWishes
+from centrode.model.values import Text, angular_speed, positive, quantity, si
 
 KIND = "gear train"
 PLANETARY = ("single planets", "stepped planets", "external meshes", "internal meshes", "two carriers")
@@ -104,6 +99,7 @@ class GearTrain(DescriptionPart):
     tolerance : of the ratio, relative
     mesh_efficiency : MeshLosses
     chosen : number of the train in the list that is shown in full
+    report : GearReportWishes
 
     Raises
     ------
@@ -132,6 +128,7 @@ class GearTrain(DescriptionPart):
     tolerance: Annotated[float, _share(0.0, 0.2)] = 0.02
     mesh_efficiency: MeshLosses = MeshLosses()
     chosen: Annotated[int, whole(1, 1000)] = 1
+    report: GearReportWishes = GearReportWishes()
 
     if TYPE_CHECKING:
 
@@ -178,32 +175,5 @@ class GearTrain(DescriptionPart):
         return self
 
 
-def read_gear_train(path: str | Path) -> GearTrain:
-    """The train described in a TOML file; raises InputError that says where it is wrong."""
-    path = Path(path)
-    return parse_gear_train(read_file(path), path.name, path.parent)
-
-
-def parse_gear_train(text: str, where: str = "", folder: Path | None = None) -> GearTrain:
-    """The train described in a text of TOML; `where` is what messages call it. Raises InputError."""
-    tables = toml_tables(text, where)
-    return gear_train_from(tables, where, folder, bare_angles_of(tables))
-
-
-def gear_train_from(
-    mapping: Mapping[str, Any],
-    where: str = "",
-    folder: Path | None = None,
-    bare_angles: BareAngles = "radians",
-) -> GearTrain:
-    """The train described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    refuse_other_kind(mapping, KIND, where)
-    return parse_tables(GearTrain, mapping, where, folder, bare_angles)
-
-
-def gear_train_text(train: GearTrain) -> str:
-    """The train as TOML in SI, without defaults; `parse_gear_train` gives exactly it back."""
-    tables = part_tables(train)
-    if train.display.refuses_bare_angles:
-        tables = with_unit(part_tables(gear_train_from(tables, bare_angles="marked")))
-    return in_short_lines(tomli_w.dumps(tables))
+GEAR_TRAINS = DescriptionFiles(KIND, lambda _tables, _where: GearTrain)
+"""Trains of gears in files."""

@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import PurePosixPath
 from typing import Annotated, Any
 
 from pydantic import PlainValidator, model_validator
 
-from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.examples import example_names, example_text
-from centrode.model.gear_pairs import KIND, RACK, GearPair
+from centrode.model.gear_pairs import GEAR_PAIRS, RACK, GearPair
 from centrode.model.reading import (
     FRAME,
     KEY,
     DescriptionPart,
     Problem,
     bounded_list,
-    nearest,
-    read_file,
-    value_text,
 )
-from centrode.model.toml import bare_angles_of, parse_tables, refuse_other_kind, toml_tables
-from centrode.model.values import READING, Name, si
+from centrode.model.values import Name, si
 
 SAME_RATIO = 1e-9
 """Ratios that differ by less than this share of them are one."""
@@ -40,40 +33,7 @@ def read_pair_of_gear(value: object) -> GearPair | None:
     """The pair of wheels that a value names or holds: a file beside the description, a built-in one, or tables."""
     if value is None or isinstance(value, GearPair):
         return value
-    if isinstance(value, Mapping):
-        return _parsed_pair(value, "")
-    if not isinstance(value, str):
-        what = _("expected the name of a file or of a built-in pair of gears, got {value}")
-        raise Problem(what.format(value=value_text(value)))
-    try:
-        return _parsed_pair(toml_tables(_text(value), value), value)
-    except InputError as error:
-        raise Problem(": ".join(part for part in (error.where, error.what) if part), error.repair) from None
-
-
-def _text(name: str) -> str:
-    """Text of a file beside the description, or of a built-in pair."""
-    if not name.endswith(".toml"):
-        names = example_names(KIND)
-        if name not in names:
-            what = _("there is no built-in pair of gears {name}").format(name=value_text(name))
-            raise Problem(what, _("a file's name ends in .toml") + "; " + nearest(name, names))
-        return example_text(name)
-    path = PurePosixPath(name.replace("\\", "/"))
-    if not name.isprintable() or path.is_absolute() or ".." in path.parts or ":" in name:
-        what = _("{name} is not in the folder of the description").format(name=value_text(name))
-        raise Problem(what, _("put the file into the folder of the description"))
-    return read_file(READING.get().folder / path)
-
-
-def _parsed_pair(tables: Mapping[str, Any], name: str) -> GearPair:
-    try:
-        refuse_other_kind(tables, KIND, name)
-        outer = READING.get()
-        bare_angles = bare_angles_of(tables) if outer.bare_angles == "refused" else outer.bare_angles
-        pair = parse_tables(GearPair, tables, name, outer.folder, bare_angles)
-    except InputError as error:
-        raise Problem(": ".join(part for part in (error.where, error.what) if part), error.repair) from None
+    pair = GEAR_PAIRS.from_value(value)
     if pair.teeth[1] == RACK:
         what = _("a wheel with a rack keeps no ratio of angles")
         raise Problem(what, _("describe the rack with [[rolling]]"))

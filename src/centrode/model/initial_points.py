@@ -74,7 +74,7 @@ class _Expansion:
             raise Problems(self.wrong)
         frame, links = self.data.get("frame"), self.data.get("links")
         if isinstance(frame, Mapping):
-            changed["frame"] = {**frame, "points": self._fixed(frame.get("points", {}))}
+            changed["frame"] = {**frame, "points": self._fix_points(frame.get("points", {}))}
         if isinstance(links, Mapping):
             changed["links"] = {name: self._link(name, link) for name, link in links.items()}
         for key, change in (("guides", self._guide), ("drives", self._drive)):
@@ -85,7 +85,7 @@ class _Expansion:
             raise Problems(self.wrong)
         return changed
 
-    def _fixed(self, points: Any) -> Any:
+    def _fix_points(self, points: Any) -> Any:
         """Points of the frame: those named, and others with coordinates of their own."""
         if isinstance(points, list | tuple):
             names = [_name(point) for point in points]
@@ -93,7 +93,7 @@ class _Expansion:
                 if name is None:
                     what = _("expected a name (text), got {value}").format(value=value_text(point))
                     self._add(what, "", "frame", "points")
-            return self._named([name for name in names if name is not None], ("frame", "points"))
+            return self._places_of([name for name in names if name is not None], ("frame", "points"))
         if isinstance(points, Mapping):
             for name in points:
                 if name in self.places and not self._agrees(name, points[name]):
@@ -110,7 +110,7 @@ class _Expansion:
     def _distance(self, one: Vector, other: Vector) -> float:
         return math.dist(one, other)
 
-    def _named(self, names: Sequence[str], at: reading.Place) -> dict[str, Vector]:
+    def _places_of(self, names: Sequence[str], at: reading.Place) -> dict[str, Vector]:
         """Coordinates of points by their names; those that are missing are problems."""
         for name in names:
             if name not in self.places:
@@ -131,7 +131,7 @@ class _Expansion:
         if len(names) < len(given):
             return link  # what is no name is refused where points are read
         at, body = ("links", name), _name(name) or ""
-        places = self._named(names, (*at, "points"))
+        places = self._places_of(names, (*at, "points"))
         if len(places) < len(names):
             return link
         for key in ("length", "angle"):
@@ -150,13 +150,13 @@ class _Expansion:
             return link
         self.poses[body] = first, math.atan2(second[1] - first[1], second[0] - first[0])
         if len(names) == 2:
-            return {**link, "points": tuple(names), "length": length, **self._turned(body)}
+            return {**link, "points": tuple(names), "length": length, **self._angle_of(body)}
         local = {point: self._local(body, place) for point, place in places.items()}
         # exactly on the axis that they make
         local |= {names[0]: (0.0, 0.0), names[1]: (length, 0.0)}
-        return {**link, "points": local, **self._turned(body)}
+        return {**link, "points": local, **self._angle_of(body)}
 
-    def _turned(self, body: str) -> dict[str, str]:
+    def _angle_of(self, body: str) -> dict[str, str]:
         """The angle of a link; the start of a drive says by itself how that of its link is counted."""
         return {} if body in self.driven else {"angle": _in_radians(self.poses[body][1])}
 
@@ -225,8 +225,8 @@ class _SphericalExpansion(_Expansion):
             if isinstance(one, Mapping)
         }
 
-    def _fixed(self, points: Any) -> Any:
-        fixed = super()._fixed(points)
+    def _fix_points(self, points: Any) -> Any:
+        fixed = super()._fix_points(points)
         if not isinstance(points, list | tuple):
             return fixed
         return {name: tuple(map(_in_radians, place)) for name, place in fixed.items()}
@@ -251,7 +251,7 @@ class _SphericalExpansion(_Expansion):
             towards = unit_vector(self._place_of(reference[1]) or (0.0, 0.0))
             if makes_arc(first, towards):
                 self.poses[body] = places[names[0]], angle_between(first, towards, second)
-                turned = {"reference": reference, **self._turned(body)}
+                turned = {"reference": reference, **self._angle_of(body)}
         length = arc(first, second)
         if len(names) == 2:
             return {**link, "points": tuple(names), "length": _in_radians(length), **turned}

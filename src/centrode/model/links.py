@@ -268,7 +268,7 @@ class Guide(DescriptionPart):
         return math.pi / 2 if self.radius is None else self.radius
 
     @property
-    def unplaced(self) -> bool:
+    def needs_place(self) -> bool:
         """Whether the line (the pole, on the sphere) is still to be placed."""
         return Placed() in (self.through, self.pole)
 

@@ -161,7 +161,7 @@ def resolve_placement(mechanism: Description) -> tuple[Frame, tuple[Guide, ...]]
     """Frame and guides with nothing left to place; raises Problems that name the missing angles."""
     points = mechanism.frame.points
     open_points = [name for name, position in points.items() if position == Placed()]
-    open_guides = [index for index, guide in enumerate(mechanism.guides) if guide.unplaced]
+    open_guides = [index for index, guide in enumerate(mechanism.guides) if guide.needs_place]
     if not (open_points or open_guides):
         return mechanism.frame, mechanism.guides
     chain = chain_of(mechanism)

@@ -134,7 +134,7 @@ def from_pmks(url: str) -> Mechanism:
     >>> ct.from_pmks("https://app.pmksplus.com/?" + joints + links).link_names
     ('AB', 'BC', 'CD')
     """
-    return _described(_decoded(_payload(url)))
+    return _describe(_decode(_payload(url)))
 
 
 def _refusal(what: str, repair: str = "") -> InputError:
@@ -184,7 +184,7 @@ def _hash_of(body: str) -> str:
     return written
 
 
-def _decoded(payload: str) -> Drawing:
+def _decode(payload: str) -> Drawing:
     sections = payload.split(".")
     if len(sections) < 7:
         raise _refusal(_("this is not a link of PMKS+: parts of it are missing"))
@@ -296,7 +296,7 @@ def _force(text: str) -> DrawnForce:
 # What it describes.
 
 
-def _described(drawing: Drawing) -> Mechanism:
+def _describe(drawing: Drawing) -> Mechanism:
     bodies = {link.id: link for link in drawing.links.values() if link.is_root and not link.is_block}
     if not bodies:
         raise _refusal(_("it has no link"), _("draw one"))

@@ -389,14 +389,12 @@ ChapterTexts = Annotated[
 ]
 
 
-class CamReportWishes(ExplanatoryNote):
-    """What the report of a cam is to hold; what is left out is chosen by the report.
+class GearReportWishes(ExplanatoryNote):
+    """What the report of a pair or a train of gears is to hold; what is left out is chosen by the report.
 
     Attributes
     ----------
     chapters : names of chapters (`centrode report --help` lists them), in any order
-    instants : tuple of float [rad]
-        Angles of the carrier, or of a cam that turns, that tables show.
     digits : int
         Significant digits of numbers.
     full : bool
@@ -406,10 +404,21 @@ class CamReportWishes(ExplanatoryNote):
     """
 
     chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
-    instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
     digits: Annotated[int, whole_number(LEAST_DIGITS, MOST_DIGITS)] | None = None
     full: Flag | None = None
     text: ChapterTexts = FrozenMap({})
+
+
+class CamReportWishes(GearReportWishes):
+    """What the report of a cam is to hold; what is left out is chosen by the report.
+
+    Attributes
+    ----------
+    instants : tuple of float [rad]
+        Angles of the carrier, or of a cam that turns, that tables show; the rest is as of gears.
+    """
+
+    instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
 
 
 class ReportWishes(ExplanatoryNote):

@@ -48,6 +48,7 @@ def _pairs(paths: tuple[str, ...]) -> Iterator[tuple[str, str]]:
 def _problems_of_path(mechanism: Description, settings: Tolerances, path: str) -> Iterator[Problem]:
     at: Place = ("tolerances", path)
     try:
+        refuse_counted(mechanism, path)
         value = dimension_at(mechanism, path)
         lower, _upper = limits_of_number(settings.dimensions[path], value)
     except InputError as error:
@@ -56,6 +57,16 @@ def _problems_of_path(mechanism: Description, settings: Tolerances, path: str) -
     if is_size(path, mechanism.space) and value > 0.0 and not value + lower > 0.0:
         what = _("the lower limit takes all of the length")
         yield Problem(what, _("give a smaller tolerance"), at)
+
+
+def refuse_counted(mechanism: Description, path: str) -> None:
+    """Raise InputError where a path names teeth, or a ratio of counted teeth, which no workshop makes too large."""
+    room, _dot, rest = path.partition(".")
+    name, _dot, last = rest.rpartition(".")
+    counted = any(gear.id == name and gear.pair is not None for gear in mechanism.gears)
+    if room == "gears" and (last == "teeth" or (last == "ratio" and counted)):
+        what = _("teeth are counted: their number and its ratio do not deviate")
+        raise InputError("", what, _("give tolerances to lengths; errors of teeth are not computed"))
 
 
 def dimension_at(mechanism: Description, path: str) -> float:

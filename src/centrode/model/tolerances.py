@@ -149,7 +149,7 @@ class Clearance(DescriptionPart):
 
     Attributes
     ----------
-    play : float [m]
+    play : float [m], on the sphere an arc [rad]
         How far the pin's centre may lie from that of the hole: half the difference of the diameters; of a slider how
         far it may leave the middle of its guide to each side.
     length : float [m]
@@ -157,7 +157,7 @@ class Clearance(DescriptionPart):
         tilt.
     """
 
-    play: Annotated[float, PlainValidator(lambda value: positive(value, "length"))]
+    play: Annotated[float, PlainValidator(lambda value: positive(value, READING.get().length))]
     length: PositiveMetres | None = None
 
     @model_validator(mode="before")

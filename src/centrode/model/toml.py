@@ -111,13 +111,18 @@ class KindOfDescription:
     ----------
     described, wanted : "this describes a cam" and "not a cam", together a sentence about two kinds
     repair : what computes it
+    named, unknown : of a value of another description that should name one, and of a name that no built-in one has;
+        empty where no other description names this kind
     """
 
     described: str
     wanted: str
     repair: str
+    named: str = ""
+    unknown: str = ""
 
 
+SYNTHESIS = "synthesis"
 KINDS: Mapping[str, KindOfDescription] = {
     "linkage": KindOfDescription(
         mark("this describes a linkage"),
@@ -128,25 +133,36 @@ KINDS: Mapping[str, KindOfDescription] = {
         mark("this describes a cam"),
         mark("not a cam"),
         mark("compute it with: centrode cam; in Python read it with read_cam"),
+        mark("expected the name of a cam's file or of a built-in cam, got {value}"),
+        mark("there is no built-in cam {name}"),
     ),
     "gear pair": KindOfDescription(
         mark("this describes a pair of gears"),
         mark("not a pair of gears"),
         mark("compute it with: centrode gears; in Python with gear_pair"),
+        mark("expected the name of a file or of a built-in pair of gears, got {value}"),
+        mark("there is no built-in pair of gears {name}"),
     ),
     "gear train": KindOfDescription(
         mark("this describes a train of gears"),
         mark("not a train of gears"),
         mark("compute it with: centrode trains; in Python with gear_train"),
     ),
+    SYNTHESIS: KindOfDescription(
+        mark("this is a request of synthesis"),
+        mark("not a request of synthesis"),
+        mark("answer it with: centrode synthesise; in Python with synthesise"),
+    ),
 }
-"""Kinds of descriptions; that of a linkage names none."""
+"""Kinds of descriptions; the file of a linkage names none, one of a synthesis has a table of that name."""
 
 
 def description_kind(mapping: Mapping[str, Any]) -> str | None:
-    """The kind of description, a key of `KINDS`; None where neither its kind nor links say it."""
+    """The kind of description, a key of `KINDS`; None where neither its kind nor its tables say it."""
+    if SYNTHESIS in mapping:
+        return SYNTHESIS
     kind = mapping.get("kind")
-    if isinstance(kind, str) and kind in KINDS and kind != "linkage":
+    if isinstance(kind, str) and kind in KINDS and kind not in ("linkage", SYNTHESIS):
         return kind
     return "linkage" if "links" in mapping else None
 
@@ -167,6 +183,18 @@ def with_unit(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: with_unit(entry) for key, entry in value.items()}
     return [with_unit(entry) for entry in value] if isinstance(value, list) else value
+
+
+_SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
+
+
+def in_short_lines(text: str) -> str:
+    """A text of TOML with short lists in one line each."""
+    return _SHORT_LIST.sub(_in_one_line, text)
+
+
+def _in_one_line(match: re.Match[str]) -> str:
+    return "[" + ", ".join(line.strip().removesuffix(",") for line in match.group(1).splitlines()) + "]"
 
 
 def toml_tables(text: str, where: str) -> dict[str, Any]:

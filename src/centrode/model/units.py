@@ -190,7 +190,7 @@ def _text_to_si(text: str, kind: str) -> float:
     except InputError as error:
         repair = _international_repair(text.strip(), unit, kind) or error.repair
         raise InputError("", _wrong(text, kind).what, repair) from None
-    return _finite(scaled(number, factor), text)
+    return _finite(scale_value(number, factor), text)
 
 
 def _international_repair(text: str, unit: str, kind: str) -> str:
@@ -239,7 +239,7 @@ def _split_unit(text: str, kind: str) -> tuple[float, str]:
     raise _wrong(text, kind)
 
 
-def scaled(value: float, factor: float) -> float:
+def scale_value(value: float, factor: float) -> float:
     """Value times factor; a whole fraction (mm: 1/1000) divides, so that "850 mm" is 0.85 to the last bit."""
     inverse = round(1 / factor) if 0 < factor < 1 else 0
     return value / inverse if inverse and abs(inverse * factor - 1) < 1e-15 else value * factor

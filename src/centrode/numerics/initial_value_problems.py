@@ -11,18 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from scipy.integrate import DOP853
-
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph
-
-STAGES = 12
-A: tuple[tuple[float, ...], ...] = tuple(tuple(map(float, DOP853.A[i, :i])) for i in range(STAGES))
-B: tuple[float, ...] = tuple(map(float, DOP853.B))
-C: tuple[float, ...] = tuple(map(float, DOP853.C[:STAGES]))
-FIFTH: tuple[float, ...] = tuple(map(float, DOP853.E5[:STAGES]))
-THIRD: tuple[float, ...] = tuple(map(float, DOP853.E3[:STAGES]))
-"""Weights of the stages: for each of them, for the step, and for both estimates of its error."""
 
 HEADER = 4
 """Rows of a state before what is carried: time, size of the next step, attempts, rows that were written."""
@@ -62,17 +52,17 @@ class InitialValueProblem:
     limit: str = ""
     guard: str = ""
 
-    @property
+    @cached_property
     def unknowns(self) -> tuple[str, ...]:
         """Names of what is followed."""
         return tuple(self.rates)
 
-    @property
+    @cached_property
     def fixed(self) -> tuple[str, ...]:
         """Names of what stays as it is during a step."""
         return tuple(name for name in self.closing if name not in self.rates)
 
-    @property
+    @cached_property
     def carried(self) -> tuple[str, ...]:
         """All that is handed from step to step."""
         return (*self.unknowns, *self.fixed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -10,21 +10,17 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.numerics.dormand_prince import FIFTH, THIRD, A, B, C
 from centrode.numerics.initial_value_problems import (
     BEFORE,
     END,
-    FIFTH,
     HEADER,
     OF_FIFTH,
     OF_THIRD,
     SIZE,
     SMALLEST,
     STEP,
-    THIRD,
     TIME,
-    A,
-    B,
-    C,
     InitialValueProblem,
 )
 from centrode.numerics.python_functions import Function, python_function
@@ -89,6 +85,14 @@ class PythonIntegration:
             given = [float(x) for x in (parameters[:, lane] if parameters.shape[1] > 1 else parameters[:, 0])]
             self._run_lane(given, after[:, lane], attempts, rows)
         return after
+
+    def attempt_of(self, parameters: Array, before: Array, after: Array) -> Callable[[], None]:
+        """A function that takes one attempt, as that of `Integration.attempt_of`."""
+
+        def attempt() -> None:
+            after[:] = self.run(parameters, before, 1)
+
+        return attempt
 
     def _run_lane(self, parameters: list[float], state: Array, attempts: int, rows: Array | None) -> None:
         problem = self.problem

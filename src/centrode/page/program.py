@@ -43,8 +43,8 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph, Unwritten
 from centrode.numerics.javascript import HELPERS, PlaceFunction, once
-from centrode.page.reaction_tracing import TracedReactions, trace_reactions
-from centrode.page.tracing import HALF, PageTrace, near_of, sign_of, trace_page, turns_of
+from centrode.page.plan_trace import HALF, PageTrace, near_of, sign_of, trace_page, turns_of
+from centrode.page.reaction_trace import TracedReactions, trace_reactions
 from centrode.quantities import QUANTITIES
 from centrode.structure.dimensions import dimensions_of
 

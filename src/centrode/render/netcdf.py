@@ -14,6 +14,8 @@ from centrode.locale import _
 
 WITHOUT_ENTRIES = "without_entries"
 """Attribute with the variables that a file leaves out: name -> [dimensions, sizes, kind of number, attributes]."""
+SLASHED = "names_with_slash"
+"""Attribute with the names that hold a slash, which the format keeps for groups: name in the file -> name."""
 MOST_BYTES = 1 << 31
 """Larger files are refused: no offset of the format's first version reaches further."""
 
@@ -23,7 +25,8 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
 
     A dimension without entries (no events, no guides) cannot be told from an unlimited one in the file format: what
     has such a dimension stands in an attribute. The values of each drive by its name are those of `drive_value`, and
-    are left out: a name may hold signs that a file refuses.
+    are left out: a name may hold signs that a file refuses. A slash in a name is written as a bar, and an attribute has
+    the names as they are.
     """
     dataset = dataset.drop_vars(_drives_by_name(dataset))
     empty = [name for name, size in dataset.sizes.items() if size == 0]
@@ -40,11 +43,22 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     }
     if absent:
         kept = kept.assign_attrs({WITHOUT_ENTRIES: json.dumps(absent)})
+    slashed = {name: _without_slash(name, kept) for name in map(str, kept.variables) if "/" in name}
+    if slashed:
+        spelled = json.dumps({written: name for name, written in slashed.items()})
+        kept = kept.rename(slashed).assign_attrs({SLASHED: spelled})
     # `to_netcdf` looks first for a cluster of computers, which takes as long as a whole run where its library is there
     with path.open("wb") as stream:
         store = ScipyDataStore(stream, mode="w", lock=False)
         kept.dump_to_store(store)
         store.close()
+
+
+def _without_slash(name: str, dataset: xarray.Dataset) -> str:
+    written = name.replace("/", "|")
+    while written in dataset.variables:
+        written += "|"
+    return written
 
 
 def _drives_by_name(dataset: xarray.Dataset) -> list[str]:
@@ -66,7 +80,8 @@ def read_dataset(path: Path) -> xarray.Dataset:
         # units of time stay numbers
         dataset = xarray.load_dataset(path, engine="scipy", decode_times=False)
         absent = _empty_variables(dataset.attrs.pop(WITHOUT_ENTRIES, "{}"))
-        return dataset.assign(absent)
+        slashed = json.loads(dataset.attrs.pop(SLASHED, "{}"))
+        return dataset.rename(slashed).assign(absent)
     except (
         OSError,
         ArithmeticError,

@@ -8,7 +8,7 @@ from centrode.errors import CentrodeError
 from centrode.render.document.chapters import document_chapter
 from centrode.report.topics import result_of
 from centrode.sheets.sheet import Sheet
-from centrode.topics.registry import (
+from centrode.topics.cams import (
     CAM_CONTACT,
     FOLLOWER_FORCES,
     FOLLOWER_MOTION,

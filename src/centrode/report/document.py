@@ -11,10 +11,8 @@ from typing import Literal, TypeAlias
 import lazy_loader
 
 from centrode.errors import CentrodeError
-from centrode.locale import _, chosen_language, speaking
-from centrode.model.cam_files import cam_text
-from centrode.model.examples.catalogue import DescriptionSource, description_of
-from centrode.model.files import mechanism_text
+from centrode.locale import _, chosen_language, mark, speaking
+from centrode.model.examples.catalogue import DescribedSource, files_of, reported_description
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import ChapterText
 from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
@@ -24,17 +22,24 @@ from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
 from centrode.report.note import CONCLUSIONS, as_note, standard_of, with_capital_heads
 from centrode.report.opening import move_players, opening_of
-from centrode.report.study import ReportOptions, ReportStudy, settle_options
+from centrode.report.study import ReportOptions, ReportStudy, Subject, settle_options
 from centrode.version import __version__
 
 _prose = functools.partial(lazy_loader.load, "centrode.report.prose", suppress_warning=True)
 
+TITLES: Mapping[Subject, str] = {
+    "mechanism": mark("Mechanism"),
+    "cam": mark("Mechanism"),
+    "gear pair": mark("Gear pair"),
+    "gear train": mark("Gear train"),
+}
+"""Of a description without a title."""
 Said: TypeAlias = Callable[[str, int, int], None]
 """Is told the title of the chapter that begins, how many are done, and how many there are."""
 
 
 def report(
-    description: DescriptionSource,
+    description: DescribedSource,
     options: ReportOptions | None = None,
     *,
     at: Sequence[float | str] | float | str | None = None,
@@ -42,11 +47,11 @@ def report(
     name: str = "",
     said: Said | None = None,
 ) -> Report:
-    """A document about a mechanism or a cam, from its data to its forces, as chapters of blocks.
+    """A document about a mechanism, a cam or gears, from its data to its forces, as chapters of blocks.
 
     Parameters
     ----------
-    description : Mechanism, Cam or PlateCam
+    description : Mechanism, Cam, PlateCam, GearPair or GearTrain
     options : ReportOptions, optional
         Go before the wishes of the description.
     at : values of the drive [rad or m; s with several drives], angles of a cam, or texts with a unit ("120 deg")
@@ -76,7 +81,7 @@ def report(
     >>> [chapter.name for chapter in made.chapters]
     ['structure']
     """
-    description = description_of(description)
+    description = reported_description(description)
     options = options or ReportOptions()
     if at is not None:
         options = replace(options, instants=at)
@@ -95,7 +100,7 @@ def report_of_study(study: ReportStudy, name: str = "", said: Said | None = None
     opening = opening_of(study, chapters)
     if not study.wishes.full:
         opening, chapters = move_players(opening, gather_checks(chapters))
-    title = _(study.description.title) or name or _("Mechanism")
+    title = _(study.description.title) or name or _(TITLES[study.subject])
     subtitle = _("Computed by centrode {version}").format(version=__version__)
     language = chosen_language()
     made = Report(title, subtitle, language, caption_blocks(chapters), opening, _description_text(study))
@@ -115,12 +120,13 @@ def _is_wanted(key: str, study: ReportStudy, is_note: bool) -> bool:
 def _description_text(study: ReportStudy) -> DescriptionText:
     """The description as a file, with the instants of the report."""
     description, instants = study.description, study.wishes.instants
+    text = files_of(description).text(description)
     if not isinstance(description, Mechanism):
-        return DescriptionText(cam_text(description), "cam", instants)
+        return DescriptionText(text, study.subject, instants)
     parameter = description.motion_parameter
     uniform = parameter.is_uniform and len(description.drives) == 1
     start = parameter.drives[0].value_of(description.drives[0].start or 0.0) if uniform else 0.0
-    return DescriptionText(mechanism_text(description), "mechanism", instants or (start,))
+    return DescriptionText(text, study.subject, instants or (start,))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:

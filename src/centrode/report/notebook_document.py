@@ -29,7 +29,13 @@ chosen = ct.ReportOptions(chapters=({name!r},))
 IFrame(page, "100%", 600)"""
 """What shows a chapter that no public function alone computes."""
 BEGIN = "%matplotlib inline\nimport centrode as ct\n\nct.choose_language({language!r});"
-READ = "{subject} = ct.parse_{subject}(description)"
+READ = {
+    "mechanism": "mechanism = ct.parse_mechanism(description)",
+    "cam": "cam = ct.parse_cam(description)",
+    "gear pair": "import tomllib\n\npair = ct.GearPair(**tomllib.loads(description))",
+    "gear train": "import tomllib\n\ntrain = ct.GearTrain(**tomllib.loads(description))",
+}
+"""How each subject is read, into a variable of its last word."""
 MARKS = re.compile(r"([\\`*_{}\[\]()#+\-.!|~$^])")
 VERSION = {"nbformat": 4, "nbformat_minor": 5}
 
@@ -58,7 +64,7 @@ def _cells(report: Report) -> Iterator[Cell]:
         yield _code(BEGIN.format(language=report.language))
         yield _words(_("The description. Change it here, and run all cells: every chapter is computed anew."))
         yield _code(f"description = {_literal(description.text)}")
-        yield _code(READ.format(subject=description.subject))
+        yield _code(READ[description.subject])
         if description.subject == "mechanism":
             yield _code(f"instants = {list(description.instants)!r}")
     for chapter in report.chapters:
@@ -83,7 +89,7 @@ def _chapter(chapter: ChapterBlocks, language: str, description: DescriptionText
     before = [_prose(section) for section in chapter.sections if section.written == "before"]
     yield _words("\n\n".join([f"## {_shown(chapter.title)}", *reason, *before]))
     if description is not None and chapter.computed and not chapter.missing:
-        page = PAGE.format(name=chapter.name, subject=description.subject, language=language)
+        page = PAGE.format(name=chapter.name, subject=description.subject.split()[-1], language=language)
         yield _code(chapter.code or page)
     after = [_prose(section) for section in chapter.sections if section.written == "after"]
     if after:

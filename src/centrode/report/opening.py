@@ -28,6 +28,8 @@ def opening_of(study: ReportStudy, chapters: Sequence[ChapterBlocks]) -> tuple[B
         follows = isinstance(study.description, PlateCam)
         caption = _("The cam with its follower") if follows else _("The walking wheel with its shoes")
         return tuple(replace(one.still, caption=caption) for one in _players(chapters)[:1])
+    if study.subject != "mechanism":
+        return ()
     try:
         course = study.motion if study.wishes.chapters is None else motion(study.mechanism)
     except CentrodeError:

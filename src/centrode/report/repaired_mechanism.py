@@ -15,7 +15,7 @@ from centrode.report.study import ReportStudy
 from centrode.report.topics import result_of
 from centrode.sheets.sheet import Chapter, Section, Sheet
 from centrode.sheets.texts import NOTHING
-from centrode.topics.registry import ROTATABILITY
+from centrode.topics.kinematics import ROTATABILITY
 from centrode.views.single_changes import repaired_blocks
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ PARTS = ("tables", "plots", "graphic")
 
 def proposed_repair(study: ReportStudy) -> ProposedRepair | None:
     """The repair that the report proposes; None where the mechanism makes its motion, or none was found."""
-    if study.is_cam:
+    if study.subject != "mechanism":
         return None
     try:
         result = result_of(ROTATABILITY, study)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeAlias, TypeVar, cast
 
 import numpy as np
 import xarray as xr
@@ -22,6 +22,8 @@ from centrode.locale import _
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
+from centrode.model.gear_pairs import GearPair
+from centrode.model.gear_trains import GearTrain
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.page_standards import STANDARDS, Standard
 from centrode.model.reading import nearest, value_text
@@ -43,6 +45,9 @@ from centrode.render.document.numbers import Numbers
 # them.
 
 Wished = TypeVar("Wished")
+Reported: TypeAlias = Mechanism | AnyCam | GearPair | GearTrain
+"""What there are reports on."""
+Subject: TypeAlias = Literal["mechanism", "cam", "gear pair", "gear train"]
 
 
 @dataclass(frozen=True)
@@ -108,7 +113,7 @@ class Wishes:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-def settle_options(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
+def settle_options(description: Reported, options: ReportOptions, known: Iterable[str]) -> Wishes:
     """The wishes of a caller, where there are none those of the description.
 
     Raises InputError for a chapter that is not in `known`, for a point that the mechanism has not, for digits out of
@@ -120,7 +125,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     full = _first(options.full, asked.full)
     found = Wishes(
         chapters,
-        _first(_instants(description, options.instants), asked.instants or description.study.instants) or (),
+        _instants_of(description, options.instants),
         _first(options.points, points),
         options.digits if options.digits is not None else asked.digits or DIGITS,
         chapters is not None if full is None else full,
@@ -149,9 +154,7 @@ def settle_options(description: Mechanism | AnyCam, options: ReportOptions, know
     return found
 
 
-def _rows_and_options(
-    description: Mechanism | AnyCam, options: ReportOptions
-) -> tuple[int | None, dict[str, Any]]:
+def _rows_and_options(description: Reported, options: ReportOptions) -> tuple[int | None, dict[str, Any]]:
     """Rows of tables over the motion, and what is wished of the computation of single topics."""
     asked = description.report
     if not isinstance(asked, ReportWishes):
@@ -186,7 +189,7 @@ def _rows_and_options(
     return _first(options.rows, asked.rows), chosen
 
 
-def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:
+def instant(description: Reported, text: float | str, where: str) -> float:
     """Value of the drive, a time with a law or several drives, an angle of a cam [rad, m or s], of a number or a text.
 
     Raises InputError, which names `where`, for a unit of another kind.
@@ -208,6 +211,18 @@ def _instants(
     return tuple(instant(description, one, "at") for one in numbers)
 
 
+def _instants_of(
+    description: Reported, given: Sequence[float | str] | float | str | None
+) -> tuple[float, ...]:
+    """Instants in SI, those of the description where a caller gives none; gears have none."""
+    if isinstance(description, GearPair | GearTrain):
+        if given is not None:
+            raise InputError("at", _("instants are those of mechanisms and cams"), _("omit them"))
+        return ()
+    own = description.report.instants or description.study.instants
+    return _first(_instants(description, given), own) or ()
+
+
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:
     return other if wish is None else wish
 
@@ -227,12 +242,12 @@ class ReportStudy:
 
     Attributes
     ----------
-    description : Mechanism, Cam or PlateCam
+    description : Mechanism, Cam, PlateCam, GearPair or GearTrain
     wishes : what the report is to hold
     numbers : how it spells its numbers
     """
 
-    def __init__(self, description: Mechanism | AnyCam, wishes: Wishes) -> None:
+    def __init__(self, description: Reported, wishes: Wishes) -> None:
         self.description = description
         self.wishes = wishes
         self.numbers = Numbers(description.display, wishes.digits)
@@ -263,13 +278,20 @@ class ReportStudy:
 
         One that only a simulation moves has a report on that.
         """
-        if not self.is_cam and not self.moves_freely:
+        if self.subject == "mechanism" and not self.moves_freely:
             _structure = self.check
 
     @property
     def moves_freely(self) -> bool:
         """Whether only a simulation moves it: it has fewer drives with a law than degrees of freedom."""
         return isinstance(self.description, Mechanism) and moves_freely(self.description)
+
+    @property
+    def subject(self) -> Subject:
+        """What is reported on, as topics call it."""
+        if isinstance(self.description, GearPair | GearTrain):
+            return self.description.kind
+        return "cam" if self.is_cam else "mechanism"
 
     @property
     def is_cam(self) -> bool:

@@ -25,7 +25,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
     if topic.document.on_request and chapter.name not in (study.wishes.chapters or ()):
         return None
     concerns = topic.concerns if chapter.concerns is None else chapter.concerns
-    if study.is_cam != (topic.subject == "cam") or (concerns is not None and not concerns(study.description)):
+    if study.subject != topic.subject or (concerns is not None and not concerns(study.description)):
         return None
     try:
         sheet = _sheet(topic, study)

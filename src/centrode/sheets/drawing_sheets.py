@@ -223,14 +223,17 @@ class GeometricDrawing:
 
 
 @dataclass(frozen=True)
-class CamSheet:
-    """A cam from the motion of its follower.
+class ProfileSheet:
+    """A profile, of a cam or of teeth, from what it is to do.
 
     Attributes
     ----------
-    diagrams : lift of the follower, its velocity and acceleration coefficients, over the cam's angle
-    choice : what decides the least radius of the cam: a drawing of lengths, or a diagram of a radius of curvature
-    profile : the cam with its follower in numbered positions of the inverted motion
+    name : of the sheet
+    diagrams : one below the other: of a cam lift, velocity and acceleration coefficients of its follower; of gears
+        sliding and pressure
+    choice : what decides the profile: the least radius of a cam, as a drawing of lengths or a diagram of a radius of
+        curvature; the rack that generates teeth
+    profile : a cam with its follower in numbered positions of the inverted motion; teeth in mesh
     facts : what is given and what follows, each as a text with its value
     display : units of the facts
     """
@@ -243,7 +246,7 @@ class CamSheet:
     display: Display
 
 
-DrawingSheet: TypeAlias = MotionSheet | DiagramSheet | VectorSheet | EnergySheet | ForceSheet | CamSheet
+DrawingSheet: TypeAlias = MotionSheet | DiagramSheet | VectorSheet | EnergySheet | ForceSheet | ProfileSheet
 
 
 @dataclass(frozen=True)

@@ -177,8 +177,7 @@ class Slopes:
         inputs: frozenset[str] = frozenset(),
     ) -> Slopes:
         """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
-        through = {path: _through(path, varied) for path in paths}
-        return cls(through, traced.standing, folds, moving, inputs, traced.implied)
+        return cls(through_of(paths, varied), traced.standing, folds, moving, inputs, traced.implied)
 
     def of_node(self, node: Node) -> dict[str, Node]:
         # what jumps, or was found by iteration, is put aside as a variable: it has no derivative
@@ -363,6 +362,14 @@ def _of_a_mass(path: str) -> bool:
     """Whether a path is that of a mass, which no dimension of the plan is."""
     room, *_name, last = path.split(".")
     return room == "links" and (last in ("mass", "inertia", "radius", "centre_radius") or ".centre." in path)
+
+
+def through_of(paths: Sequence[str], varied: Varied) -> Mapping[str, Through]:
+    """Path -> the variables of a plan that its value moves, each with a factor.
+
+    Raises Untraceable for one that moves more than is known here.
+    """
+    return {path: _through(path, varied) for path in paths}
 
 
 def _through(path: str, varied: Varied) -> Through:

@@ -281,6 +281,11 @@ class Solver:
                 return _frame_like(kept.frame, given, outputs)
         return self._frame_of(given, self._solve(given))
 
+    @property
+    def without_gradient(self) -> str:
+        """Why the outputs have no derivatives, as a sentence that is not translated; empty where they have some."""
+        return self._reason if self._live is None else ""
+
     def outputs(self, values: Values) -> Any:
         """All numbers of the outputs with these values, (numbers,) one output after the other; one alone as a float.
 

@@ -183,7 +183,7 @@ def four_bar_answer(
     mechanism = four_bar_description(linkage, side, crank[0], sense, title, display, point, further)
     turns = bool((crank_margins(linkage[None]) > 0).all())
     defects = proved_defects(mechanism, crank, sense, turns, wanted.constraints.crank is not None)
-    curve, met, size = traced(mechanism, point, crank, sense, turns)
+    curve, met, size = trace_point(mechanism, point, crank, sense, turns)
     others = []
     if wanted.kind == "path":
         for other, its_side, start in cognates(linkage, side, float(crank[0])):
@@ -247,7 +247,7 @@ def box_around(mechanism: Mechanism, places: Array) -> tuple[float, float]:
     return float(high[0] - low[0]), float(high[1] - low[1])
 
 
-def traced(
+def trace_point(
     mechanism: Mechanism, point: str, crank: Array, sense: float, turns: bool
 ) -> tuple[Complex, Complex, tuple[float, float]]:
     """Curve of the point, its places at crank angles, and the box around all moving points, by the engine."""

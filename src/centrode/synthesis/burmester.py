@@ -243,17 +243,17 @@ def three_pose_moving_points(poses: Poses, fixed: Complex) -> Complex:
     by_u, by_v, base = _matrices(poses)
     at = np.stack([fixed.real, fixed.imag, np.ones(len(fixed))], axis=-1)
     system = np.stack([at @ by_u.T, at @ by_v.T], axis=-1)
-    return _solved(system, -(at @ base.T))
+    return _solve_pairs(system, -(at @ base.T))
 
 
 def three_pose_centres(poses: Poses, moving: Complex) -> Complex:
     """Centres (n) of the circles through three places of moving points (n), which are given in the first pose."""
     by_u, by_v, base = _matrices(poses)
     matrix = moving.real[:, None, None] * by_u + moving.imag[:, None, None] * by_v + base
-    return _solved(matrix[:, :, :2], -matrix[:, :, 2])
+    return _solve_pairs(matrix[:, :, :2], -matrix[:, :, 2])
 
 
-def _solved(system: Array, right: Array) -> Complex:
+def _solve_pairs(system: Array, right: Array) -> Complex:
     determinant = np.linalg.det(system)
     regular = np.abs(determinant) > 1e-12
     system = np.where(regular[:, None, None], system, np.eye(2))

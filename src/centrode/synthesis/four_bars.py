@@ -154,7 +154,7 @@ def least_transmission(linkages: Array) -> Array:
         return np.where(greatest <= 1.0, np.arccos(np.minimum(greatest, 1.0)), np.nan)
 
 
-def transformed(linkages: Array, factor: Complex, shift: Complex) -> Array:
+def transform(linkages: Array, factor: Complex, shift: Complex) -> Array:
     """Linkages turned and scaled by a complex factor (lanes,), then moved by `shift` (lanes,) [m]."""
     moved = linkages.copy()
     size = np.abs(factor)
@@ -166,7 +166,7 @@ def transformed(linkages: Array, factor: Complex, shift: Complex) -> Array:
     return moved
 
 
-def mirrored(linkages: Array) -> Array:
+def mirror_image(linkages: Array) -> Array:
     """Mirror images in the x axis; the side of B changes with them, which the caller does."""
     image = linkages.copy()
     image[:, [OY, DY, PY]] *= -1

@@ -160,7 +160,7 @@ def five_points(crank: Array, rocker: Array) -> FunctionLinkages:
         psi = 0.5 * np.arctan2(-a1 * b0 + b1 * a0, -a0 * b2 + b0 * a2) if a1 * b2 != a2 * b1 else 0.0
         if a1 * b2 - a2 * b1 < 0:
             psi += np.pi / 2
-        place = _polished(crank, rocker, first, second, np.array([phi, psi]))
+        place = _polish(crank, rocker, first, second, np.array([phi, psi]))
         near = any(np.abs(np.sin(place - other)).max() < 1e-7 for other in starts)
         if not near:
             starts.append(place)
@@ -172,7 +172,7 @@ def _resultant(crank: Array, rocker: Array, first: list[int], second: list[int],
     return (-a0 * b2 + b0 * a2) ** 2 + (-a1 * b0 + b1 * a0) ** 2 - (a1 * b2 - a2 * b1) ** 2
 
 
-def _polished(crank: Array, rocker: Array, first: list[int], second: list[int], place: Array) -> Array:
+def _polish(crank: Array, rocker: Array, first: list[int], second: list[int], place: Array) -> Array:
     """Newton's method for both determinants, with differences that rounding allows."""
 
     def values(at: Array) -> Array:
@@ -236,7 +236,7 @@ def least_errors(
             break
     refined = []
     for count, k in enumerate(chosen):
-        refined.append(_descended(variables[k], float(side[k]), crank, rocker, keeps))
+        refined.append(_descend(variables[k], float(side[k]), crank, rocker, keeps))
         progress(0.5 + 0.3 * (count + 1) / len(chosen))
         if stop():
             break
@@ -319,13 +319,13 @@ def _least_greatest(
     # A region that has shrunk at a corner is opened again as long as that helps.
     for _round in range(8):
         before = float(_worst(variables[None], np.array([side]), crank, rocker)[0])
-        variables = _descended(variables, side, crank, rocker, keeps)
+        variables = _descend(variables, side, crank, rocker, keeps)
         if _worst(variables[None], np.array([side]), crank, rocker)[0] > before * (1 - 1e-6):
             break
     return variables
 
 
-def _descended(
+def _descend(
     variables: Array,
     side: float,
     crank: Array,

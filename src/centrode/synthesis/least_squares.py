@@ -14,15 +14,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from centrode.synthesis.four_bars import (
-    COUPLER,
-    CRANK,
-    DX,
-    DY,
-    OX,
-    OY,
-    PX,
-    PY,
-    ROCKER,
     Array,
     Booleans,
     Complex,
@@ -121,7 +112,7 @@ class Lanes:
         for name in ("variables", "crank", "first", "errors", "violation"):
             getattr(self, name)[which] = getattr(others, name)
 
-    def joined(self, other: Lanes) -> Lanes:
+    def join(self, other: Lanes) -> Lanes:
         """These and others; both have been fitted."""
         own = np.broadcast_to(np.arange(self.crank.shape[1]), self.crank.shape)
         others = np.broadcast_to(np.arange(self.crank.shape[1]), other.crank.shape)
@@ -285,13 +276,13 @@ def _step(
     free_crank = problem.targets.crank is None
     if free_crank:
         # each angle belongs to its own target, or to the first of those that share it
-        own = _shared((turn * turn).sum(axis=-1), first)
-        mixed = _shared(np.einsum("lnr,lnri->lni", turn, by), first)
+        own = _sum_shared((turn * turn).sum(axis=-1), first)
+        mixed = _sum_shared(np.einsum("lnr,lnri->lni", turn, by), first)
         # a cusp must not send the angle far
         own = own + 1e-4 * own.mean(axis=1, keepdims=True) + 1e-14
         scaled = mixed / own[..., None]
         normal -= mixed.transpose(0, 2, 1) @ scaled
-        pull = _shared((turn * rows).sum(axis=-1), first)
+        pull = _sum_shared((turn * rows).sum(axis=-1), first)
         gradient -= (scaled * pull[..., None]).sum(axis=1)
     # Variables that are fixed, or pressed against their bound, stay.
     fixed = ~problem.free | ((variables <= problem.low) & (gradient > 0))
@@ -305,14 +296,14 @@ def _step(
     normal[~good], gradient[~good] = np.eye(VARIABLES), 0.0
     inverse = np.linalg.inv(normal)
 
-    def solved(right: Array, pulled: Array | None) -> tuple[Array, Array]:
+    def solve(right: Array, pulled: Array | None) -> tuple[Array, Array]:
         step = (inverse @ np.where(fixed, 0.0, -right / scale)[..., None])[..., 0] / scale
         if pulled is None:
             return step, np.zeros_like(crank)
         turned = -(pulled + (mixed @ step[..., None])[..., 0]) / own
         return step, turned if first is None else np.take_along_axis(turned, first, axis=1)
 
-    step, turned = solved(gradient, pull if free_crank else None)
+    step, turned = solve(gradient, pull if free_crank else None)
     # Along a curved valley the second derivative in the direction of the step bends it
     # (M. K. Transtrum, J. P. Sethna, arXiv:1201.5885, 2012).
     part = 0.1
@@ -323,9 +314,9 @@ def _step(
     bend = 2.0 / part * ((ahead - rows) / part - straight)
     gradient = (transposed @ bend.reshape(lanes, -1, 1))[..., 0]
     if free_crank:
-        pull = _shared((turn * bend).sum(axis=-1), first)
+        pull = _sum_shared((turn * bend).sum(axis=-1), first)
         gradient -= (scaled * pull[..., None]).sum(axis=1)
-    second, turned_further = solved(np.where(good[:, None], gradient, 0.0), pull if free_crank else None)
+    second, turned_further = solve(np.where(good[:, None], gradient, 0.0), pull if free_crank else None)
     ratio = np.linalg.norm(second * scale, axis=1) / np.maximum(np.linalg.norm(step * scale, axis=1), 1e-300)
     bent = np.where(np.isfinite(ratio) & (ratio < 0.75), 0.5, 0.0)[:, None]
     step = step + bent * np.where(bent > 0, second, 0.0)
@@ -333,11 +324,11 @@ def _step(
     return step, turned
 
 
-def _shared(values: Array, first: np.ndarray[tuple[int, ...], np.dtype[np.int64]] | None) -> Array:
-    return values if first is None else _gathered(values, first)
+def _sum_shared(values: Array, first: np.ndarray[tuple[int, ...], np.dtype[np.int64]] | None) -> Array:
+    return values if first is None else _gather(values, first)
 
 
-def _gathered(values: Array, first: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Array:
+def _gather(values: Array, first: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Array:
     """Sums over targets that share an angle, at the first of them; zero at the others."""
     sums = np.zeros_like(values)
     np.add.at(sums, (np.arange(len(values))[:, None], first), values)
@@ -431,17 +422,3 @@ def _isotonic(values: Array, weights: Array) -> tuple[np.ndarray[tuple[int, ...]
     bounds = [*starts, len(values)]
     sizes = np.diff(bounds)
     return np.repeat(np.array(starts, dtype=np.int64), sizes), np.repeat(np.array(levels), sizes)
-
-
-def free_problem(targets: Targets, dimensions: object = None) -> Problem:
-    """A problem in which every dimension is free and the crank's phase where angles are given."""
-    free = np.ones(VARIABLES, dtype=bool)
-    free[PHASE] = targets.crank is not None
-    free[ATTACHMENT] = targets.directions is not None
-    low, high = np.full(VARIABLES, -np.inf), np.full(VARIABLES, np.inf)
-    low[[CRANK, COUPLER, ROCKER]] = LEAST_LENGTH
-    return Problem(targets, free, low, high)
-
-
-PLACE = (OX, OY, DX, DY)
-POINT = (PX, PY)

@@ -11,12 +11,7 @@ from centrode.locale import _
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.synthesis.answers import Answer, SynthesisResults, four_bar_answer
-from centrode.synthesis.curve_matching import (
-    closed_candidates,
-    open_candidates,
-    random_candidates,
-    timed_candidates,
-)
+from centrode.synthesis.candidate_refinement import Progress, fit_lanes
 from centrode.synthesis.four_bars import (
     COUPLER,
     CRANK,
@@ -44,8 +39,13 @@ from centrode.synthesis.least_squares import (
     Targets,
     is_ordered,
 )
-from centrode.synthesis.path_fitting import Progress, fit_lanes
 from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
+from centrode.synthesis.start_candidates import (
+    closed_candidates,
+    open_candidates,
+    random_candidates,
+    timed_candidates,
+)
 
 CRANK_MARGIN = 1e-4
 """Of Grashof's rule, in units of frame and crank: a crank that only just turns is none."""
@@ -238,7 +238,7 @@ def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) ->
         if problem.free[PHASE]:
             low[PHASE], high[PHASE] = -np.pi, np.pi
         further = random_candidates(targets.points, targets.crank, low, high, random, RANDOM_STARTS)
-        lanes = lanes.joined(further)
+        lanes = lanes.join(further)
     lanes.variables = np.clip(lanes.variables, problem.low, problem.high)
     if targets.directions is not None:
         motion = coupler_motion(

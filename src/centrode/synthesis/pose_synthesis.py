@@ -65,7 +65,7 @@ def pose_answers(
         )  # fmt: skip
         raise MotionError("[synthesis] targets", what, _("change one of the poses, or remove one"))
     progress(0.3)
-    answers = _chosen(task, poses, dyads, pairs, progress, stop)
+    answers = _choose_answers(task, poses, dyads, pairs, progress, stop)
     if not answers:
         what = _("{count} linkages lead through the poses, but none keeps everything that is required")
         repair = _("loosen a constraint, or change a pose")
@@ -120,7 +120,7 @@ def _free_dyads(poses: Poses) -> Dyads:
     return Dyads(np.repeat(grid, len(away)), fixed.ravel())
 
 
-def _chosen(
+def _choose_answers(
     task: SynthesisTask,
     poses: Poses,
     dyads: Dyads,

@@ -15,6 +15,7 @@ from pydantic import AfterValidator, BeforeValidator, PlainValidator, model_vali
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.description_files import DescriptionFiles
 from centrode.model.files import mechanism_from
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import (
@@ -25,11 +26,10 @@ from centrode.model.reading import (
     choice,
     named_entries,
     nearest,
-    read_file,
     value_text,
 )
 from centrode.model.settings import Display, whole_number
-from centrode.model.toml import bare_angles_of, parse_tables, toml_tables
+from centrode.model.toml import SYNTHESIS, description_kind, refuse_other_kind
 from centrode.model.values import (
     READING,
     BareAngles,
@@ -355,44 +355,44 @@ def read_synthesis(path: str | Path) -> SynthesisTask:
     >>> ct.read_synthesis(file).synthesis.stroke
     0.4
     """
-    path = Path(path)
-    return parse_synthesis(read_file(path), path.name, path.parent)
+    return SYNTHESES.read(path)
 
 
-def parse_synthesis(text: str, where: str = "", folder: Path | None = None) -> SynthesisTask:
-    """The request in a text of TOML; `where` is what messages call it. Raises InputError."""
-    tables = toml_tables(text, where)
-    return synthesis_from(tables, where, folder, bare_angles_of(tables))
+class _SynthesisFiles(DescriptionFiles[SynthesisTask]):
+    """Requests of a synthesis as files, with the mechanism whose numbers are sought beside what is wanted."""
+
+    def from_tables(
+        self,
+        mapping: Mapping[str, Any],
+        where: str = "",
+        folder: Path | None = None,
+        bare_angles: BareAngles = "radians",
+    ) -> SynthesisTask:
+        """The request that plain dicts and lists as a file's give; raises InputError that starts with `where`."""
+        if SYNTHESIS not in mapping:
+            if description_kind(mapping) != "linkage":
+                refuse_other_kind(mapping, self.kind, where)
+            repair = _("write what is wanted below [synthesis]")
+            raise InputError(where, _("there is no table [synthesis]"), repair)
+        others = {key: value for key, value in mapping.items() if key != SYNTHESIS}
+        named = isinstance(mapping[SYNTHESIS], Mapping) and mapping[SYNTHESIS].get("topology") is not None
+        kept = {key: mapping[key] for key in ("title", "display", SYNTHESIS) if key in mapping}
+        mechanism = None
+        if "links" in others:
+            if named:
+                what = _("the file describes links, and names a topology")
+                raise InputError(where, what, _("remove topology, or the links"))
+            mechanism = mechanism_from(others, where, folder, bare_angles)
+        elif not named:
+            what = _("the structure that is sought is not given")
+            repair = _('name a topology, as topology = "crank-rocker", or describe links')
+            raise InputError(where, what, repair)
+        elif unknown := [key for key in others if key not in kept]:
+            what = _("unknown key {key}").format(key=value_text(unknown[0]))
+            raise InputError(where, what, nearest(unknown[0], ("title", "display", SYNTHESIS)))
+        task = super().from_tables(kept, where, folder, bare_angles)
+        return task.model_copy(update={"mechanism": mechanism})
 
 
-def synthesis_from(
-    mapping: Mapping[str, Any],
-    where: str = "",
-    folder: Path | None = None,
-    bare_angles: BareAngles = "radians",
-) -> SynthesisTask:
-    """The request given by plain dicts and lists as a file's; raises InputError that starts with `where`."""
-    if "synthesis" not in mapping:
-        repair = _("write what is wanted below [synthesis]")
-        raise InputError(where, _("there is no table [synthesis]"), repair)
-    others = {key: value for key, value in mapping.items() if key != "synthesis"}
-    mechanism = None
-    named = isinstance(mapping["synthesis"], Mapping) and mapping["synthesis"].get("topology") is not None
-    if "links" in others:
-        if named:
-            what = _("the file describes links, and names a topology")
-            raise InputError(where, what, _("remove topology, or the links"))
-        mechanism = mechanism_from(others, where, folder, bare_angles)
-    elif not named:
-        what = _("the structure that is sought is not given")
-        raise InputError(where, what, _('name a topology, as topology = "crank-rocker", or describe links'))
-    kept: dict[str, Any] = {key: others[key] for key in ("title", "display") if key in others}
-    if mechanism is None:
-        for key in others:
-            if key not in kept:
-                what = _("unknown key {key}").format(key=value_text(key))
-                raise InputError(where, what, nearest(key, ("title", "display", "synthesis")))
-    task = parse_tables(
-        SynthesisTask, {**kept, "synthesis": mapping["synthesis"]}, where, folder, bare_angles
-    )
-    return task.model_copy(update={"mechanism": mechanism})
+SYNTHESES = _SynthesisFiles(SYNTHESIS, lambda _tables, _where: SynthesisTask)
+"""Requests of a synthesis in files."""

@@ -54,7 +54,7 @@ def stroke_answers(task: SynthesisTask) -> SynthesisResults:
         case "slider-crank-offset":
             mechanisms = [_slider_crank(task, ratio)]
         case "shaper" | "whitworth-quick-return":
-            mechanisms = [_slotted(task, ratio)]
+            mechanisms = [_slotted_lever(task, ratio)]
         case "crank-rocker":
             mechanisms = _crank_rockers(task, ratio)
         case _:
@@ -69,7 +69,7 @@ def _answer(mechanism: Mechanism, transmission: float, wanted: Synthesis) -> Ans
     data = motion(mechanism, CHECKED_PLACES)
     branch = bool((data.status.to_numpy() != int(Status.OK)).any())
     box = box_around(mechanism, data.position.to_numpy())
-    numbers = _measured(mechanism, wanted)
+    numbers = _measure_stroke(mechanism, wanted)
     zero = 0.0
     return Answer(
         mechanism, zero, zero, zero, transmission, box,
@@ -90,7 +90,7 @@ def output_of(mechanism: Mechanism, wanted: Synthesis) -> tuple[str, str]:
     return "slide", guide
 
 
-def _measured(mechanism: Mechanism, wanted: Synthesis) -> Mapping[str, tuple[float, str]]:
+def _measure_stroke(mechanism: Mechanism, wanted: Synthesis) -> Mapping[str, tuple[float, str]]:
     """Stroke and time ratio of the output, refined between samples by the slopes of the engine's motion."""
     kind, name = output_of(mechanism, wanted)
 
@@ -129,7 +129,7 @@ def _measured(mechanism: Mechanism, wanted: Synthesis) -> Mapping[str, tuple[flo
     }
 
 
-def _described(task: SynthesisTask, title: str, **parts: Any) -> Mechanism:
+def _describe(task: SynthesisTask, title: str, **parts: Any) -> Mechanism:
     display = task.display.model_dump(exclude_unset=True)
     return Mechanism(title=task.title or title, display=display, **parts)
 
@@ -151,7 +151,7 @@ def _slider_crank(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
         best = slider_crank(wanted.stroke, ratio, None)
         raise _too_poor(None if best is None else best.transmission)
     name = wanted.guide or "B"
-    mechanism = _described(
+    mechanism = _describe(
         task,
         "Offset slider-crank",
         frame={"points": {"O": [0.0, 0.0]}},
@@ -165,7 +165,7 @@ def _slider_crank(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
     return mechanism, found.transmission
 
 
-def _slotted(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
+def _slotted_lever(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
     wanted = task.synthesis
     assert wanted.stroke is not None
     turning = wanted.topology == "whitworth-quick-return"
@@ -188,7 +188,7 @@ def _slotted(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
     tip = tip - 1j * frame
     drop = (design.height - frame) - tip.imag
     slant = math.asin(drop / design.link)
-    mechanism = _described(
+    mechanism = _describe(
         task,
         "Whitworth quick return" if turning else "Shaper with a slotted lever",
         frame={"points": {"O": [0.0, 0.0], "D": [0.0, -frame]}},
@@ -214,7 +214,7 @@ def _slotted(task: SynthesisTask, ratio: float) -> tuple[Mechanism, float]:
     return mechanism, design.transmission
 
 
-def _chosen_rockers(wanted: Synthesis, ratio: float, swing: float, rocker: float) -> list[CrankRocker]:
+def _choose_rockers(wanted: Synthesis, ratio: float, swing: float, rocker: float) -> list[CrankRocker]:
     if not swing < math.pi:
         raise InputError("[synthesis] swing", _("a rocker swings by less than 180 deg"), _("reduce it"))
     found = crank_rockers(swing, ratio, rocker)
@@ -232,8 +232,8 @@ def _crank_rockers(task: SynthesisTask, ratio: float) -> list[tuple[Mechanism, f
     wanted = task.synthesis
     assert wanted.swing is not None
     answers = []
-    for one in _chosen_rockers(wanted, ratio, wanted.swing, wanted.length or 1.0):
-        mechanism = _described(
+    for one in _choose_rockers(wanted, ratio, wanted.swing, wanted.length or 1.0):
+        mechanism = _describe(
             task,
             "Crank-rocker",
             frame={"points": {"O": [one.fixed.real, one.fixed.imag], "D": [0.0, 0.0]}},
@@ -260,11 +260,11 @@ def _presses(task: SynthesisTask, ratio: float) -> list[tuple[Mechanism, float]]
     link = max(sagitta / math.cos(angle), 0.8 * arm)
     name = wanted.guide or "H"
     answers = []
-    for one in _chosen_rockers(wanted, ratio, swing, wanted.length or arm / 2):
+    for one in _choose_rockers(wanted, ratio, swing, wanted.length or arm / 2):
         start, first, second = _position(one)
         tip = arm * second / abs(second)
         slant = math.asin((arm - sagitta - tip.imag) / link)
-        mechanism = _described(
+        mechanism = _describe(
             task,
             "Six-bar press",
             frame={"points": {"O": [one.fixed.real, one.fixed.imag], "C": [0.0, 0.0]}},

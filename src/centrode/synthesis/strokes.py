@@ -92,7 +92,7 @@ def slider_crank(stroke: float, time_ratio: float, transmission: float | None) -
     angles = np.nan_to_num(of(beta)[3], nan=-1.0)
     best = int(np.argmax(angles))
     if transmission is None:
-        chosen = _refined(lambda at: float(of(np.array([at]))[3][0]), beta, best)
+        chosen = _refine(lambda at: float(of(np.array([at]))[3][0]), beta, best)
     else:
         ascending = angles[: best + 1]
         if angles[best] < transmission:
@@ -107,7 +107,7 @@ def slider_crank(stroke: float, time_ratio: float, transmission: float | None) -
     return SliderCrank(crank, coupler, offset, angle)
 
 
-def _refined(value: Callable[[float], float], places: Array, best: int) -> float:
+def _refine(value: Callable[[float], float], places: Array, best: int) -> float:
     """The place of the greatest value, by golden sections between the neighbours of the best one of a grid."""
     low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)])
     golden = (math.sqrt(5) - 1) / 2

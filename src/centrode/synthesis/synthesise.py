@@ -12,7 +12,7 @@ from centrode.synthesis.answers import SynthesisResults
 from centrode.synthesis.function_synthesis import function_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
-from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SynthesisTask, read_synthesis, synthesis_from
+from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SYNTHESES, SynthesisTask
 from centrode.synthesis.stroke_synthesis import stroke_answers
 
 SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
@@ -24,9 +24,9 @@ def task_of(source: SynthesisSource) -> SynthesisTask:
     if isinstance(given, SynthesisTask):
         return given
     if isinstance(given, str | Path):
-        return read_synthesis(given)
+        return SYNTHESES.read(given)
     if isinstance(given, Mapping):
-        return synthesis_from(given)
+        return SYNTHESES.from_tables(given)
     what = _("this function takes a request of a synthesis, its file or its tables")
     raise InputError("", what, _("it got a value of type {kind}").format(kind=type(source).__name__))
 

@@ -10,6 +10,7 @@ and how it gets there one of contact dynamics, which this is not.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,38 +23,26 @@ from scipy.optimize import minimize
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.errors import CentrodeError, InputError
+from centrode.kinematics.motion import motion
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.files import document, mechanism_from
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.tolerance_checks import bodies_at_pin
+from centrode.model.reading import value_text
+from centrode.tolerances.joint_play import JointPlay
 from centrode.tolerances.sensitivity import differentiated_solver
+from centrode.tolerances.spherical_play import (
+    displaced_place,
+    hole_slopes,
+    sides_in_links,
+    with_free_holes,
+)
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-CIRCLE = 1e-12
-"""Share of the greatest sensitivity below which a joint moves the output by rounding alone."""
+POLE = 1e-6
+"""Cosine of a latitude below which longitudes lose half of their digits."""
 _FOLDED = re.compile(r"(range|max|min)\((\w+)\)")
-
-
-@dataclass(frozen=True)
-class JointPlay:
-    """Play of one joint.
-
-    Attributes
-    ----------
-    name : "B/AB" of link AB on the pin B; of a slider that of its guide
-    body : whose hole or guide it is: the link, or what carries the guide
-    point : the pin; empty of a guide
-    play : [m]
-    length : of a slider that tilts [m], else None
-    """
-
-    name: str
-    body: str
-    point: str
-    play: float
-    length: float | None = None
 
 
 @dataclass(frozen=True)
@@ -78,26 +67,10 @@ class ClearanceExtent:
     by_force: Array | None
 
 
-def play_of(mechanism: Mechanism) -> tuple[JointPlay, ...]:
-    """Joints that have play in the description."""
-    settings = mechanism.tolerances
-    found: dict[str, JointPlay] = {}
-    guides = {guide.id: guide for guide in mechanism.guides}
-    for name, clearance in (settings.clearances if settings is not None else {}).items():
-        pin, _slash, link = name.partition("/")
-        bodies = bodies_at_pin(mechanism, pin) if pin in mechanism.points else []
-        if name in guides:
-            found[name] = JointPlay(name, guides[name].on, "", clearance.play, clearance.length)
-        for body in [link] if link else bodies[1:]:
-            label = f"{pin}/{body}"
-            # what names one link goes before what names all of them
-            if label not in found or link:
-                found[label] = JointPlay(label, body, pin, clearance.play)
-    return tuple(found.values())
-
-
 def with_free_joints(mechanism: Mechanism, joints: Sequence[JointPlay]) -> Mechanism:
     """The same mechanism, in which the places of these hinges and lines are numbers of their own."""
+    if mechanism.space == "sphere":
+        return with_free_holes(mechanism, joints)
     tables = document(mechanism)
     tables.pop("tolerances", None)
     for joint in joints:
@@ -119,7 +92,7 @@ def with_free_joints(mechanism: Mechanism, joints: Sequence[JointPlay]) -> Mecha
 
 @dataclass(frozen=True)
 class _Moves:
-    """How outputs move by play, in the axes of the frame.
+    """How outputs move by play, in the axes of the frame; on the sphere east and north on the link.
 
     Attributes
     ----------
@@ -136,13 +109,11 @@ def clearance_extents(
 ) -> dict[str, ClearanceExtent]:
     """Deviations of outputs by play; outputs that fold samples otherwise than by range, max or min are left out.
 
-    Raises InputError on the sphere.
+    Raises InputError on the sphere for a hole at a pole of its link, and for outputs of forces and masses.
     """
     mechanism = prepared.mechanism
     if mechanism.space == "sphere":
-        raise InputError(
-            "[tolerances.clearances]", _("play in joints is computed in the plane only"), _("remove it")
-        )
+        _check_on_sphere(mechanism, joints, texts)
     sampled: dict[str, str] = {}
     folded: dict[str, tuple[str, str]] = {}
     for name, text in texts.items():
@@ -160,11 +131,11 @@ def clearance_extents(
         moving.split(moving.outputs(list(moving.own))),
     )
     frame = moving.move(list(moving.own))
-    rotors = {
-        link: np.exp(1j * np.asarray(frame["angle"][:, number]))
-        for number, link in enumerate(mechanism.links)
-    }
-    rotors[FRAME] = np.ones(len(moving.parameter), dtype=complex)
+    rotors = {body: np.ones(len(moving.parameter), dtype=complex) for body in (FRAME, *mechanism.links)}
+    if mechanism.space == "plane":
+        # on the sphere what presses a pin is said in the axes of the link, so nothing is turned
+        for number, link in enumerate(mechanism.links):
+            rotors[link] = np.exp(1j * np.asarray(frame["angle"][:, number]))
     sides = pressed_sides(mechanism, joints, samples)
     found: dict[str, ClearanceExtent] = {}
     bands: dict[str, tuple[Array, Array]] = {}
@@ -198,11 +169,38 @@ def _of_fold(fold: str, values: Array, band: Array, extent: ClearanceExtent) -> 
     return ClearanceExtent(extent.joints, shares, np.asarray(shares.sum()), nan, nan, None)
 
 
-def _paths(mechanism: Mechanism, joints: Sequence[JointPlay]) -> list[str]:
-    paths = []
+FORCES = ("joint_force", "joint_moment", "guide_force", "guide_normal", "balancing", "reduced", "frame_force")
+
+
+def _check_on_sphere(mechanism: Mechanism, joints: Sequence[JointPlay], texts: Mapping[str, str]) -> None:
+    where = "[tolerances.clearances]"
+    if mechanism.guides:
+        what = _(
+            "on the sphere play is computed of linkages without guides: circles that close have no derivatives"
+        )
+        raise InputError(where, what, _("remove it"))
     for joint in joints:
-        place = f"links.{joint.body}.points.{joint.point}" if joint.point else f"guides.{joint.name}.through"
-        paths += [path for path in (f"{place}.x", f"{place}.y") if path not in paths]
+        latitude = mechanism.links[joint.body].coordinates[joint.point][1]
+        if abs(math.cos(latitude)) < POLE:
+            what = _("{name}: the hole lies at a pole of its link, where longitude has no direction")
+            raise InputError(where, what.format(name=value_text(joint.name)), _("turn the axes of the link"))
+    for text in texts.values():
+        if any(word in text for word in FORCES):
+            what = _("on the sphere play moves positions, and not {name}").format(name=value_text(text))
+            raise InputError(where, what, _("remove it, or this output"))
+
+
+def place_paths(mechanism: Mechanism, joint: JointPlay) -> tuple[str, ...]:
+    """Paths of the two numbers that say where a hole or a line is."""
+    place = f"links.{joint.body}.points.{joint.point}" if joint.point else f"guides.{joint.name}.through"
+    first, second = ("x", "y") if mechanism.space == "plane" else ("longitude", "latitude")
+    return f"{place}.{first}", f"{place}.{second}"
+
+
+def _paths(mechanism: Mechanism, joints: Sequence[JointPlay]) -> list[str]:
+    paths: list[str] = []
+    for joint in joints:
+        paths += [path for path in place_paths(mechanism, joint) if path not in paths]
         for turned in turned_places(mechanism, joint):
             paths += [path for path in (turned.x_path, turned.y_path) if path not in paths]
     return paths
@@ -242,8 +240,11 @@ def _moves(
 ) -> _Moves:
     by_place, tilting = {}, {}
     for joint in joints:
-        place = f"links.{joint.body}.points.{joint.point}" if joint.point else f"guides.{joint.name}.through"
-        first = paths.index(f"{place}.x")
+        first = paths.index(place_paths(mechanism, joint)[0])
+        if mechanism.space == "sphere":
+            place = mechanism.links[joint.body].coordinates[joint.point]
+            by_place[joint.name] = hole_slopes(slopes[:, first : first + 2], place)
+            continue
         # a derivative is a row: in the frame's axes it turns as the vector of its two numbers
         local = slopes[:, first] + 1j * slopes[:, first + 1]
         turned = local * rotors[joint.body]
@@ -280,7 +281,8 @@ def pressed_sides(
     """Unit vectors (samples, 2) from the middle of each joint to the side that its force presses the pin, or slider,
     to.
 
-    NaN where there is no force; None where no masses and loads are known, or reactions are not determined.
+    On the sphere in the axes of the link. NaN where there is no force; None where no masses and loads are known, or
+    reactions are not determined.
     """
     if not has_masses_or_loads(mechanism):
         return None
@@ -288,6 +290,8 @@ def pressed_sides(
         found = reactions(mechanism, samples)
     except CentrodeError:
         return None
+    if mechanism.space == "sphere":
+        return sides_in_links(mechanism, joints, found, motion(mechanism, samples))
     sides = {}
     for joint in joints:
         if joint.point:
@@ -366,13 +370,20 @@ class PinPlaces:
         number = 0
         for joint in self.joints:
             if joint.point:
-                row = self.paths.index(f"links.{joint.body}.points.{joint.point}.x")
+                row = self.paths.index(place_paths(self.mechanism, joint)[0])
                 angle = unknowns[number]
+                if self.mechanism.space == "sphere":
+                    place = self.mechanism.links[joint.body].coordinates[joint.point]
+                    values[row : row + 2], slopes[row : row + 2, number] = displaced_place(
+                        place, joint.play, float(angle)
+                    )
+                    number += 1
+                    continue
                 values[row : row + 2] += joint.play * np.array([np.cos(angle), np.sin(angle)])
                 slopes[row : row + 2, number] += joint.play * np.array([-np.sin(angle), np.cos(angle)])
                 number += 1
                 continue
-            row = self.paths.index(f"guides.{joint.name}.through.x")
+            row = self.paths.index(place_paths(self.mechanism, joint)[0])
             guide = self.mechanism.guide(joint.name)
             normal = np.array([-guide.unit[1], guide.unit[0]])
             count = 1 if joint.length is None else 2

@@ -15,7 +15,7 @@ from centrode.locale import _
 from centrode.model.files import value_at
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import value_text
-from centrode.model.tolerance_checks import bodies_at_pin, limits_of_number
+from centrode.model.tolerance_checks import bodies_at_pin, limits_of_number, refuse_counted
 from centrode.model.tolerances import Correlation, Distribution, Limits, is_size
 from centrode.model.values import Vector
 
@@ -112,6 +112,7 @@ def limits_of(mechanism: Mechanism, given: Mapping[str, Limits | str] | None = N
         given = {**_defaults(mechanism, settings.default), **settings.dimensions}
     for path, tolerance in (given or {}).items():
         try:
+            refuse_counted(mechanism, path)
             found[path] = limits_of_number(tolerance, value_at(mechanism, path))
         except InputError as error:
             raise InputError(f"[tolerances] {path}", error.what, error.repair) from None

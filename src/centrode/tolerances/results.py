@@ -24,9 +24,10 @@ from centrode.printing import PrintsSummary
 from centrode.sweeps.designs import unit_of
 from centrode.sweeps.outputs import identifier
 from centrode.tolerances.assembly_in_limits import AssemblyInLimits, first_stop
-from centrode.tolerances.clearances import ClearanceExtent, clearance_extents, play_of
+from centrode.tolerances.clearances import ClearanceExtent, clearance_extents
 from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms, Evaluated
 from centrode.tolerances.dimension_limits import DimensionLimits, limits_of
+from centrode.tolerances.joint_play import play_of
 from centrode.tolerances.sensitivity import Outputs, named_outputs
 from centrode.tolerances.statistical import Drawn, Propagated, draw_deviations, drawn_outputs, propagated
 from centrode.tolerances.worst_case import (

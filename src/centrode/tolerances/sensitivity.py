@@ -44,6 +44,7 @@ from centrode.sweeps.solver import Solver, solver
 from centrode.sweeps.solver_outputs import LiveColumn
 from centrode.tolerances.cam_sensitivity import cam_sensitivity
 from centrode.tolerances.dimension_limits import check_paths, length_paths
+from centrode.tolerances.limit_gradient import gradient_at_limit
 from centrode.tolerances.transmission_formulas import NAME, transmission_formulas, with_transmission_angles
 from centrode.version import __version__
 
@@ -233,7 +234,14 @@ def differentiated_solver(
                 raise InputError("outputs", what, nearest(group, formulas))
     # labels of formulas are letters; what users call the outputs need not be
     labelled = {f"output{number}": text for number, text in enumerate(outputs.values())}
-    return solver(mechanism, list(paths), samples, at=at, outputs=labelled)
+    moving = solver(mechanism, list(paths), samples, at=at, outputs=labelled)
+    if moving.without_gradient:
+        reason = _(moving.without_gradient)
+        what = _("of this mechanism no derivatives by dimensions are computed: {reason}").format(
+            reason=reason
+        )
+        raise InputError(mechanism.title, what, _("compare mechanisms of other dimensions in a sweep"))
+    return moving
 
 
 def _variables_of(
@@ -331,7 +339,7 @@ def stroke_gradient(
 def limit_gradient(prepared: Ready, paths: Sequence[str], end: str) -> tuple[float, Array]:
     """Value of the drive [rad or m] at one end of its way, and the derivatives of this value.
 
-    NaN for a group of higher class, whose limit no radicand tells, and under a law. Raises InputError where the drive
+    NaN under a law, and where several groups lock at once. Raises InputError where the drive
     has no such limit, or there are several drives.
     """
     found = limits(prepared.mechanism)
@@ -343,9 +351,16 @@ def limit_gradient(prepared: Ready, paths: Sequence[str], end: str) -> tuple[flo
     if not prepared.parameter.is_uniform:
         return there.value, blank
     try:
-        return there.value, _radicand_gradient(prepared, tuple(paths), there.value)
+        found = _radicand_gradient(prepared, tuple(paths), there.value)
     except Untraceable:
-        return there.value, blank
+        found = blank
+    if np.isnan(found).any():
+        # no radicand tells the limit of a group of higher class, the constraints do
+        try:
+            found = gradient_at_limit(prepared, paths, there.value)
+        except Untraceable:
+            return there.value, blank
+    return there.value, found
 
 
 def _radicand_gradient(prepared: Ready, paths: tuple[str, ...], limit: float) -> Array:

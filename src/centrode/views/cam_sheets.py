@@ -24,7 +24,6 @@ from centrode.cams.followers.motion import extremes_of, follower_motion, motion_
 from centrode.cams.nodes import inside, nodes_of
 from centrode.quantities import QUANTITIES
 from centrode.sheets.drawing_sheets import (
-    CamSheet,
     GeometricDrawing,
     GeometryAngle,
     GeometryCircle,
@@ -32,6 +31,7 @@ from centrode.sheets.drawing_sheets import (
     GeometryLine,
     GeometryName,
     LineLook,
+    ProfileSheet,
     ScaledCurve,
     ScaledDiagram,
 )
@@ -85,7 +85,7 @@ TITLES = {
 }
 
 
-def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> CamSheet:
+def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> ProfileSheet:
     """The sheet of a cam with its follower in about so many positions."""
     phi = np.array(numbered_angles(cam, positions))
     choice: GeometricDrawing | ScaledDiagram
@@ -95,7 +95,7 @@ def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> CamSheet:
         choice = _acceleration_diagram(cam, body, phi)
     else:
         choice = _bend_diagram(body, phi)
-    return CamSheet(
+    return ProfileSheet(
         Sentence("Synthesis of the cam mechanism"),
         tuple(_motion_diagrams(cam, phi)),
         choice,
@@ -105,7 +105,7 @@ def cam_sheet(cam: PlateCam, body: FollowerCam, positions: int) -> CamSheet:
     )
 
 
-def driving_cam_sheet(drive: Drive, sheet: CamSheet, display: Display) -> CamSheet:
+def driving_cam_sheet(drive: Drive, sheet: ProfileSheet, display: Display) -> ProfileSheet:
     """The sheet of a cam as it stands in the linkage that it drives, in the units of the linkage.
 
     An oscillating follower lifts clockwise on the sheet of its cam alone. Where the lift turns the link of the linkage

@@ -11,6 +11,7 @@ import numpy as np
 from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
 from centrode.gears.profiles import whole_tooth
 from centrode.gears.racks import rack_positions, rack_tooth
+from centrode.gears.shift_fields import shift_fields
 from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing, OutlineSet
 from centrode.sheets.plots import (
@@ -21,8 +22,10 @@ from centrode.sheets.plots import (
     AreaPath,
     AxisLabel,
     Curve,
+    CurveDiagram,
     CurvePanel,
     Plot,
+    Trace,
 )
 from centrode.sheets.sheet import (
     Column,
@@ -43,6 +46,13 @@ from centrode.sheets.texts import (
     Text,
     Title,
     Unit,
+)
+from centrode.views.gear_pair_chapters import (
+    contact_chapter,
+    contour_chapter,
+    data_chapter,
+    geometry_chapter,
+    teeth_chapter,
 )
 
 if TYPE_CHECKING:
@@ -101,7 +111,23 @@ def sheet(results: GearPairResults) -> Sheet:
                 "mesh": lambda: _mesh(results),
                 "sliding": lambda: _sliding(results),
                 "generation": lambda: _generation(results),
-                **({"blocking-contour": lambda: _contour(results)} if contour else {}),
+                **(
+                    {
+                        "contact-ratio": lambda: _contact_ratios(results),
+                        "blocking-contour": lambda: _contour(results),
+                    }
+                    if contour
+                    else {}
+                ),
+            }
+        ),
+        chapters=Deferred(
+            {
+                "data": lambda: data_chapter(results, PURPOSES.get(results.gear_pair.purpose or "")),
+                "gear-geometry": lambda: geometry_chapter(results, wheels_table(results)),
+                "gear-contact": lambda: contact_chapter(results),
+                **({"blocking-contour": lambda: contour_chapter(results)} if contour else {}),
+                "gear-teeth": lambda: teeth_chapter(results),
             }
         ),
         printed=(wheels_table(results),),
@@ -249,14 +275,18 @@ def _rows(results: GearPairResults) -> list[Row]:
 def wheels_table(results: GearPairResults) -> Table:
     """Dimensions of both wheels, in the units of the display."""
     heads, units, numbers = zip(*_rows(results), strict=True)
-    values = np.array(numbers)
     spelled = tuple(NOTHING if unit == "1" else Unit(unit, shown=True) for unit in units)
+    # numbers of teeth and lengths stand in one column: each is spelled by itself
+    pinion, wheel = (
+        tuple(Number(row[place], unit, unit_hidden=True) for unit, row in zip(units, numbers, strict=True))
+        for place in (0, 1)
+    )
     return Table(
         (
             Column("quantity", heads, head=Sentence("dimension")),
             Column("unit", spelled, head=Sentence("unit")),
-            Column("pinion", values[:, 0], head=PINION, units=units),
-            Column("wheel", values[:, 1], head=_second(results.geometry), units=units),
+            Column("pinion", pinion, head=PINION),
+            Column("wheel", wheel, head=_second(results.geometry)),
         ),
         Sentence("Dimensions of the wheels"),
     )
@@ -544,6 +574,44 @@ def _sliding(results: GearPairResults) -> Plot:
         Abscissa(label, action.places, count),
         tuple(rows),
         places=tuple(places),
+    )
+
+
+SHIFT_NODES = 241
+"""Places of the curves of the contact ratio."""
+
+
+def _contact_ratios(results: GearPairResults) -> CurveDiagram:
+    """The contact ratio over the shift of each wheel alone, and over that of the pinion at the centre distance."""
+    contour, pair = results.contour, results.geometry
+    assert contour is not None
+    first, second = pair.shifts
+    across = np.linspace(contour.first[0], contour.first[-1], SHIFT_NODES)
+    up = np.linspace(contour.second[0], contour.second[-1], SHIFT_NODES)
+    kept = pair.shift_sum
+    courses = (
+        (Sentence("over the shift of the pinion alone"), across, across, np.full(SHIFT_NODES, second)),
+        (Sentence("over the shift of the wheel alone"), up, np.full(SHIFT_NODES, first), up),
+        (
+            Sentence("over that of the pinion, the centre distance kept"),
+            across,
+            across,
+            kept - pair.sign * across,
+        ),
+    )
+    traces = []
+    for name, shown, own, other in courses:
+        ratios = shift_fields(pair, own, other).contact_ratio
+        traces.append(Trace(name, shown, np.where(ratios > 0, ratios, np.nan)))
+    here = np.array([[first, pair.contact_ratio]])
+    traces[0] = Trace(traces[0].name, traces[0].x, traces[0].y, marks=here)
+    return CurveDiagram(
+        Sentence("Contact ratio over the shifts"),
+        Title(results.gear_pair.title),
+        AxisLabel(Sentence("shift coefficient")),
+        AxisLabel(Sentence("contact ratio")),
+        tuple(traces),
+        (float(min(across[0], up[0])), float(max(across[-1], up[-1]))),
     )
 
 

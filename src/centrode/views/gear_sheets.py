@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.sheets.drawing_sheets import (
-    CamSheet,
     GeometricDrawing,
     GeometryFrame,
     GeometryLine,
     GeometryName,
     LineLook,
+    ProfileSheet,
     ScaledCurve,
     ScaledDiagram,
 )
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from centrode.gears.results import GearPairResults
 
 
-def gear_sheet(results: GearPairResults) -> CamSheet:
+def gear_sheet(results: GearPairResults) -> ProfileSheet:
     """The sheet of a pair of gears."""
-    return CamSheet(
+    return ProfileSheet(
         Sentence("Gear pair"),
         tuple(_diagrams(results)),
         _generation(results),

@@ -14,6 +14,12 @@ from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing
 from centrode.sheets.plots import AxisLabel, CurveDiagram, Trace
 from centrode.sheets.sheet import Column, Deferred, Fact, Scalar, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text, Title
+from centrode.views.gear_train_chapters import (
+    choice_chapter,
+    conditions_chapter,
+    data_chapter,
+    motion_chapter,
+)
 
 if TYPE_CHECKING:
     from centrode.gears.planetary_trains import AnyTrain
@@ -52,6 +58,16 @@ def sheet(results: GearTrainResults) -> Sheet:
                 "wheels": lambda: _wheels(results),
                 "velocities": lambda: _velocities(results),
                 "angular-velocities": lambda: _angular_velocities(results),
+            }
+        ),
+        chapters=Deferred(
+            {
+                "data": lambda: data_chapter(results, SCHEMES[results.gear_train.scheme]),
+                "train-choice": lambda: choice_chapter(
+                    results, tuple(_facts(results)), trains_table(results, LISTED)
+                ),
+                "train-conditions": lambda: conditions_chapter(results),
+                "train-motion": lambda: motion_chapter(members_table(results)),
             }
         ),
         printed=(trains_table(results, LISTED), members_table(results)),
@@ -144,7 +160,7 @@ def _columns(results: GearTrainResults, trains: tuple[AnyTrain, ...]) -> Iterato
             Symbol("z", str(shown.index(place) + 1)) if place in shown else NOTHING for place in range(8)
         ]
     for place in shown:
-        teeth = np.array([train.teeth[place] for train in trains], dtype=np.float64)
+        teeth = np.array([train.teeth[place] for train in trains], dtype=np.int64)
         name = f"teeth_{shown.index(place) + 1}"
         yield Column(name, teeth, head=letters[place])
 
@@ -156,7 +172,7 @@ def trains_table(results: GearTrainResults, most: int | None) -> Table:
     length = Sentence("length") if isinstance(trains[0], OrdinaryTrain) else Sentence("diameter")
     return Table(
         (
-            Column("number", np.arange(1.0, len(trains) + 1), head=Sentence("number")),
+            Column("number", np.arange(1, len(trains) + 1, dtype=np.int64), head=Sentence("number")),
             *_columns(results, trains),
             Column(
                 "ratio", np.array([results.whole_ratio(train) for train in trains]), head=Sentence("ratio")

@@ -13,13 +13,13 @@ from centrode.cams.profiles import cam_body
 from centrode.cams.roller_path import Frames, frames
 from centrode.quantities import QUANTITIES
 from centrode.sheets.drawing_sheets import (
-    CamSheet,
     GeometricDrawing,
     GeometryCircle,
     GeometryFrame,
     GeometryLine,
     GeometryName,
     LineLook,
+    ProfileSheet,
     ScaledCurve,
     ScaledDiagram,
 )
@@ -51,7 +51,7 @@ TITLES = (
 )
 
 
-def path_sheet(cam: Cam, closed: ClosedPath, positions: int) -> CamSheet:
+def path_sheet(cam: Cam, closed: ClosedPath, positions: int) -> ProfileSheet:
     """The sheet of a cam by a curvature law, its roller in so many evenly spaced positions."""
     phi = np.linspace(closed.start, closed.stop, positions, endpoint=not closed.whole)
     around = np.concatenate([mesh_with(*inside(*ends), phi) for ends in pairwise(closed.edges)])
@@ -66,7 +66,7 @@ def path_sheet(cam: Cam, closed: ClosedPath, positions: int) -> CamSheet:
             ScaledDiagram(title, angle_axis(), up, (ScaledCurve(NOTHING, around, values),), ticks)
         )
     found = frames(closed, around)
-    return CamSheet(
+    return ProfileSheet(
         Sentence("Synthesis of the cam by a curvature law"),
         tuple(diagrams),
         _velocity_diagram(rows, closed.radius(phi, 1), found),

@@ -338,7 +338,12 @@ def _play_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
     joints = extents[0][1].joints
     columns = [
         Column("joint", tuple(Name(joint.name) for joint in joints), head=Sentence("joint")),
-        Column("play", np.array([joint.play for joint in joints]), "m", head=Sentence("play")),
+        Column(
+            "play",
+            np.array([joint.play for joint in joints]),
+            "m" if results.mechanism.space == "plane" else "rad",
+            head=Sentence("play"),
+        ),
     ]
     for output, extent in extents:
         shares = extent.shares

@@ -37,17 +37,6 @@ def four_bar(
     }
 
 
-def squares(loops: int) -> Parts:
-    """The chain of squares of IFToMM's library (A02): verticals of 1 m and 1 kg joined by horizontals, upright."""
-    links = {f"V{k}": rod(f"A{k}", f"B{k}", 1.0, math.pi / 2) for k in range(loops + 1)}
-    links |= {f"H{k}": rod(f"B{k}", f"B{k + 1}", 1.0, 0.0) for k in range(loops)}
-    return {
-        "gravity": GRAVITY,
-        "frame": {"points": {f"A{k}": [float(k), 0.0] for k in range(loops + 1)}},
-        "links": links,
-    }
-
-
 def parallelogram(cranks: int) -> Parts:
     """A bar on parallel cranks: with three of them one closure repeats the others."""
     points = {f"B{k}": [float(k), 0.0] for k in range(cranks)}

@@ -10,7 +10,7 @@ import pytest
 import centrode as ct
 from centrode.dynamics.forward_dynamics.free_motion import free_motion_of
 from centrode.dynamics.sensitivities.return_map import PeriodicMotion, periodic_motion
-from centrode.dynamics.simulation.multibody import multibody_setting
+from centrode.dynamics.simulation.multibody_motion import multibody_setting
 from centrode.dynamics.simulation.results import simulation_results
 from centrode.dynamics.simulation.steady_state import steady_regime
 

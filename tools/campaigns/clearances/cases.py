@@ -7,7 +7,8 @@ import numpy as np
 import centrode as ct
 from centrode.errors import CentrodeError
 from centrode.kinematics.preparation import ready
-from centrode.tolerances.clearances import clearance_extents, play_of
+from centrode.tolerances.clearances import clearance_extents
+from centrode.tolerances.joint_play import play_of
 from tools.campaigns.campaign import Campaign, Outcome, random_of
 
 POSITIONS = 1_000_000

@@ -192,6 +192,13 @@ def distance_from_dense(dense: DenseMechanism, free: FreeMotion, places: Any) ->
     )
 
 
+COLUMNS = {
+    "drift": f"greatest change of the energy over m g l; at most {DRIFT:g}",
+    "gap": f"greatest gap of a cut loop over 1 m or the greatest length; at most {GAP:g}",
+    "states": f"distance of points from dense equations after 1 s, over the same length; at most {APART:g}",
+    "way back": f"distance of points from the start after 1 s there and 1 s back; at most {APART:g}",
+}
+
 CAMPAIGN = Campaign(
     name="free-motions",
     title="Mechanisms left to gravity",
@@ -204,12 +211,7 @@ CAMPAIGN = Campaign(
         "backwards to its start. A motion that ends early is a fault, but for change points in which two or more "
         "closures are lost at once: those are counted as refused, each by name."
     ),
-    columns={
-        "drift": f"greatest change of the energy over m g l; at most {DRIFT:g}",
-        "gap": f"greatest gap of a cut loop over 1 m or the greatest length; at most {GAP:g}",
-        "states": f"distance of points from dense equations after 1 s, over the same length; at most {APART:g}",
-        "way back": f"distance of points from the start after 1 s there and 1 s back; at most {APART:g}",
-    },
+    columns=COLUMNS,
     run=run,
     cases=1200,
 )

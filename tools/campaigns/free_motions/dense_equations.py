@@ -32,6 +32,8 @@ APART = 3e-3
 """Their step, of unit coordinates."""
 RANK = 1e-9
 """Equations below this share of the greatest singular value repeat others."""
+INDEPENDENT = 1e-6
+"""The same share at the start, where constraints hold."""
 MOST_STEPS = 500
 
 
@@ -48,12 +50,17 @@ class DenseEquations:
     constraints : (coordinates, lanes) -> (equations, lanes), over complex numbers too
     root : W with W W' = M^-1
     force : (coordinates), constant
+    repeats : whether equations repeat others
+    rank : number of equations that do not; off the constraints those that repeat others are none, as far as it goes
+    potential : (coordinates, lanes) -> (lanes), of springs, over complex numbers too
     """
 
     constraints: Callable[[Array], Array]
     root: Array
     force: Array
     repeats: bool = True
+    rank: int | None = None
+    potential: Callable[[Array], Array] | None = None
 
     @property
     def size(self) -> int:
@@ -64,6 +71,13 @@ class DenseEquations:
         """Jacobian of the constraints."""
         lanes = q[:, None] + 1j * TINY * np.eye(self.size)
         return np.imag(self.constraints(lanes)) / TINY
+
+    def forces(self, q: Array) -> Array:
+        """Forces along the coordinates: weights, and what springs give."""
+        if self.potential is None:
+            return self.force
+        lanes = q[:, None] + 1j * TINY * np.eye(self.size)
+        return np.asarray(self.force - np.imag(self.potential(lanes)) / TINY)
 
     def accelerations(self, q: Array, v: Array) -> Array:
         """Accelerations that the forces and the least forces of the constraints give."""
@@ -77,11 +91,11 @@ class DenseEquations:
         )
         slopes = np.imag(self.constraints(lanes)) / TINY
         rows, bias = slopes[:, : self.size], slopes[:, self.size :] @ WEIGHTS / step
-        free = self.root @ (self.root.T @ self.force)
+        free = self.root @ (self.root.T @ self.forces(q))
         along = rows @ self.root
         right = rows @ free + bias
         if self.repeats:
-            return np.asarray(free - self.root @ np.linalg.lstsq(along, right, rcond=RANK)[0])
+            return np.asarray(free - self.root @ self._least_change(along, right))
         forces = np.linalg.solve(along @ along.T, right)
         return np.asarray(free - self.root @ (along.T @ forces))
 
@@ -89,7 +103,7 @@ class DenseEquations:
         """The nearest coordinates that close."""
         for _step in range(20):
             gap = self.constraints(q[:, None])[:, 0]
-            change = np.linalg.lstsq(self.rows(q), -gap, rcond=RANK)[0]
+            change = -self._least_change(self.rows(q), gap)
             q = q + change
             if np.max(np.abs(change), initial=0.0) < 1e-14 * (1.0 + np.max(np.abs(q))):
                 break
@@ -98,7 +112,15 @@ class DenseEquations:
     def consistent(self, q: Array, v: Array) -> Array:
         """The nearest velocities that the constraints allow."""
         rows = self.rows(q)
-        return np.asarray(v - np.linalg.lstsq(rows, rows @ v, rcond=RANK)[0])
+        return np.asarray(v - self._least_change(rows, rows @ v))
+
+    def _least_change(self, rows: Array, gap: Array) -> Array:
+        """The least change that makes up for a gap, by as many singular values as there are equations that count."""
+        if not len(rows):
+            return np.zeros(self.size)
+        left, sizes, right = np.linalg.svd(rows, full_matrices=False)
+        counted = slice(0, self.rank if self.rank is not None else int(np.sum(sizes > RANK * sizes[0])))
+        return np.asarray(right[counted].T @ ((left[:, counted].T @ gap) / sizes[counted]))
 
     def energy_of_motion(self, v: Array) -> float:
         """Kinetic energy [J]."""
@@ -157,7 +179,9 @@ class DenseMechanism:
         self.start = self.equations.closed(start)
         rows = self.equations.rows(self.start)
         sizes = np.linalg.svd(rows, compute_uv=False) if len(rows) else np.ones(1)
-        self.equations.repeats = len(sizes) < len(rows) or bool(sizes[-1] <= 1e-6 * sizes[0])
+        independent = int(np.sum(sizes > INDEPENDENT * sizes[0])) if len(rows) else 0
+        self.equations.repeats = independent < len(rows)
+        self.equations.rank = independent
 
     def _local(self, body: Parts) -> dict[str, Array]:
         points = body["points"]
@@ -208,6 +232,21 @@ class DenseMechanism:
             else:
                 force[3 * k : 3 * k + 2] = body["mass"] * gravity
         return force
+
+    def add_springs(self, springs: Sequence[Any]) -> None:
+        """Springs between two points, straight and with a stiffness and a free length."""
+        if not springs:
+            return
+
+        def potential(q: Array) -> Array:
+            total = np.zeros(q.shape[1], dtype=q.dtype)
+            for spring in springs:
+                apart = self.point(q, spring.points[1]) - self.point(q, spring.points[0])
+                length = np.sqrt(np.sum(apart**2, axis=0))
+                total = total + 0.5 * spring.stiffness * (length - spring.free_length) ** 2
+            return total
+
+        self.equations.potential = potential
 
     # places of everything
 

@@ -56,7 +56,7 @@ function Tools() {
     <div class="tools" role="toolbar" aria-label={say("tools")}>
       <div class="modes" role="group" aria-label={say("modes")}>
         {MODES.map((one) => {
-          const barred = !draws && one !== "move", why = barred ? say("not_on_sphere") : say(`mode_${one}_hint`);
+          const barred = !draws && (one === "draw" || one === "guide"), why = barred ? say("not_on_sphere") : say(`mode_${one}_hint`);
           return (
             <button type="button" aria-pressed={mode.value === one} aria-disabled={barred} data-mode={one} title={why}
               onClick={() => { if (barred) tell(why, true); else batch(() => { mode.value = one; tell(why); }); }}><Icon name={one} /><span>{say(`mode_${one}`)}</span></button>
@@ -154,14 +154,14 @@ addEventListener("keydown", (event) => {
     Delete: () => void removeSelected(), Backspace: () => void removeSelected(), ",": () => step(-1), ".": () => step(1), "?": () => { dialog.value = "keys"; },
   };
   const act = acts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!act || (scene.value?.draws === false && "dge".includes(event.key))) return;
+  if (!act || (scene.value?.draws === false && "dg".includes(event.key))) return;
   event.preventDefault();
   act();
 });
 addEventListener("hashchange", () => void follow());
 addEventListener("beforeunload", keepNow);
 effect(() => {
-  if (scene.value?.draws === false && mode.value !== "move") mode.value = "move";
+  if (scene.value?.draws === false && (mode.value === "draw" || mode.value === "guide")) mode.value = "move";
 });
 effect(() => {
   if (mode.value === "move") return;

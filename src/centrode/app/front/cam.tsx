@@ -1,14 +1,14 @@
 // A cam: its profile under the follower, and its segments as fields, with the profile following every change.
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { camPicture } from "./cam_picture";
 import { Icon } from "./icons";
 import { ChartView, Missing, signed } from "./motion_panel";
-import { U, digits } from "./outlines";
-import { make } from "./picture";
-import type { CamScene, Place, Segment } from "./protocol";
+import type { CamScene, Segment } from "./protocol";
 import { edit, place, problems, scene } from "./state";
 import { say } from "./words";
 
+const PRIMES = { lift: "", velocity: "′", acceleration: "″" };
 const QUANTITIES = ["lift", "velocity", "acceleration"] as const;
 
 // The cam turns under its follower; the line above it is the follower's place at that angle.
@@ -18,7 +18,7 @@ export function CamStage() {
   useEffect(() => {
     const element = holder.current;
     if (!element || !cam) return;
-    element.replaceChildren(picture(cam, at, box.wide, box.high, scene.value?.title ?? ""));
+    element.replaceChildren(camPicture(cam, at, box.wide, box.high, `${say("cam_picture")}: ${scene.value?.title ?? ""}`));
   }, [cam, at, box.wide, box.high]);
   return <div class="cam-stage" ref={holder} />;
 }
@@ -36,28 +36,9 @@ function signalSize(holder: { current: HTMLElement | null }): { wide: number; hi
   return sizes.value;
 }
 
-export const camSamples = (cam: CamScene | undefined): number => (cam?.displacement?.angle?.length ?? cam?.profile.length ?? 1) - 1;
-
-function picture(cam: CamScene, at: number, wide: number, high: number, title: string): SVGSVGElement {
-  const svg = make("svg", { viewBox: `0 0 ${wide * U} ${high * U}`, class: "drawing cam", role: "img", "aria-label": `${say("cam_picture")}: ${title}` });
-  const curves = [cam.profile, cam.pitch ?? []], reach = Math.max(1e-9, ...curves.flat().map(([x, y]) => Math.hypot(x ?? 0, y ?? 0)));
-  const scale = (0.43 * Math.min(wide, high) * U) / reach, angles = cam.displacement?.angle ?? [0];
-  const low = Math.max(0, Math.min(angles.length - 1, Math.floor(at))), share = at - low, first = angles[low] ?? 0;
-  const turn = first + share * ((angles[low + 1] ?? first) - first), middle = [(wide * U) / 2, (high * U) / 2];
-  const path = (curve: Place[]): string => curve.map(([x, y], k) => `${k ? "L" : "M"}${digits(x! * scale)} ${digits(-y! * scale)}`).join("");
-  const turned = make("g", { transform: `translate(${digits(middle[0]!)} ${digits(middle[1]!)}) rotate(${((-turn * 180) / Math.PI).toFixed(2)})` }, svg);
-  if (cam.profile.length) make("path", { class: "cam-body hue-0", d: `${path(cam.profile)}Z` }, turned);
-  if (cam.pitch?.length) make("path", { class: "pitch", d: `${path(cam.pitch)}${cam.open ? "" : "Z"}` }, turned);
-  if (cam.base) {
-    make("circle", { class: "base", r: digits(cam.base * scale) }, turned);
-    make("path", { class: "spoke", d: `M0 0L${digits(0.5 * cam.base * scale)} 0` }, turned);
-  }
-  make("circle", { class: "hinge", r: 55, cx: digits(middle[0]!), cy: digits(middle[1]!) }, svg);
-  // the follower's roller touches where the sample is
-  const spots = cam.pitch?.length ? cam.pitch : null, spot = spots?.[Math.min(spots.length - 1, Math.round((at * (spots.length - 1)) / Math.max(1, angles.length - 1)))];
-  if (spot && cam.roller) make("circle", { class: "roller hue-1", cx: digits(spot[0]! * scale), cy: digits(-spot[1]! * scale), r: digits(cam.roller * scale) }, turned);
-  return svg;
-}
+// What the player goes through: angles of the cam, or of what leads a roller around it.
+export const camAngles = (cam: CamScene | undefined): number[] => cam?.carrier ?? cam?.displacement?.angle ?? [];
+export const camSamples = (cam: CamScene | undefined): number => Math.max(0, camAngles(cam).length - 1);
 
 function Field({ label, value, unit, path, wide }: { label: string; value: string; unit?: string; path: string; wide?: boolean }) {
   const wrong = problems.value.find((problem) => problem.path === path);
@@ -114,15 +95,15 @@ export function CamPanel() {
       {course?.missing && <Missing message={course.missing} repair={course.repair} />}
       {course?.angle && QUANTITIES.map((name) => {
         const values = course[name];
-        return values?.length ? <CamChart key={name} title={say(`cam_${name}`)} unit={name === "lift" ? signed(lift.unit) : `${signed(lift.unit)}/rad${name === "acceleration" ? "²" : ""}`} values={values} factor={lift.factor} x={x} /> : null;
+        return values?.length ? <CamChart key={name} title={say(`cam_${name}`)} symbol={(course.unit === "rad" ? "ψ" : "s") + PRIMES[name]} unit={name === "lift" ? signed(lift.unit) : `${signed(lift.unit)}/rad${name === "acceleration" ? "²" : ""}`} values={values} factor={lift.factor} x={x} /> : null;
       })}
     </>
   );
 }
 
-function CamChart({ title, unit, values, factor, x }: { title: string; unit: string; values: (number | null)[]; factor: number; x: { values: number[]; label: string; unit: string } }) {
+function CamChart({ title, symbol, unit, values, factor, x }: { title: string; symbol: string; unit: string; values: (number | null)[]; factor: number; x: { values: number[]; label: string; unit: string } }) {
   const kept = useRef<{ values: (number | null)[]; data: Parameters<typeof ChartView>[0]["data"] } | null>(null);
-  if (kept.current?.values !== values) kept.current = { values, data: { title, unit: signed(unit), x, lines: [{ label: title, values: values.map((value) => (value === null ? NaN : value * factor)) }] } };
+  if (kept.current?.values !== values) kept.current = { values, data: { title, unit: signed(unit), x, lines: [{ label: symbol, values: values.map((value) => (value === null ? NaN : value * factor)) }] } };
   return (
     <figure class="chart">
       <figcaption class="head">{title}</figcaption>

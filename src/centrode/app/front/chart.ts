@@ -3,7 +3,7 @@ import { digits } from "./outlines";
 import { make } from "./picture";
 import { fixed, say, tickText, withUnit } from "./words";
 
-const TALL = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWER = 22;
+const TALLEST = 176, LEFT = 56, RIGHT = 14, UPPER = 20, LOWEST = 22;
 
 export interface ChartLine {
   label: string;
@@ -110,8 +110,11 @@ export class Chart {
   private range(): [number, number] {
     const own = this.data!.lines.flatMap((line) => Array.from(line.x ?? [])).filter(Number.isFinite);
     if (own.length) return [own.reduce((a, b) => Math.min(a, b)), own.reduce((a, b) => Math.max(a, b))];
-    const values = this.data!.x.values, first = values[0] ?? 0, last = values[values.length - 1] ?? 1;
+    const values = this.data!.x.values, first = values[0] ?? 0, last = values[values.length - 1] ?? 1, all = Array.from(values).filter(Number.isFinite);
     this.rising = first <= last;
+    const least = all.reduce((a, b) => Math.min(a, b), first), most = all.reduce((a, b) => Math.max(a, b), last), slack = 1e-9 * (most - least);
+    // what goes to and fro, as a drive over its turns
+    if (least < Math.min(first, last) - slack || most > Math.max(first, last) + slack) return [least, most];
     return [first, last]; // a drive that turns back has its way from left to right all the same
   }
 
@@ -119,6 +122,9 @@ export class Chart {
     const { data, svg, wide } = this;
     if (!data) return;
     svg.replaceChildren();
+    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), long = 7 * symbol.length > 0.3 * wide;
+    // a long name of the abscissa stands below its numbers
+    const TALL = TALLEST + (long ? 15 : 0), LOWER = LOWEST + (long ? 15 : 0), named = long ? 0 : 8 * symbol.length + 22;
     svg.setAttribute("viewBox", `0 0 ${wide} ${TALL}`);
     let least = Infinity, most = -Infinity;
     for (const line of data.lines) for (let k = 0; k < line.values.length; k += 1) {
@@ -151,12 +157,11 @@ export class Chart {
       make("line", { class: "mark change", x1: x(one.at), x2: x(one.at), y1: UPPER, y2: TALL - LOWER }, svg);
       make("text", { class: "axis", x: x(one.at), y: 13, "text-anchor": "middle" }, svg).textContent = one.label;
     }
-    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), named = 8 * symbol.length + 22;
     const [first, last] = [Math.min(low, high), Math.max(low, high)], vertical = steps(first, last, wide / 80, data.x.unit === "°");
     for (const tick of ticks(first, last, vertical)) {
       make("line", { class: "grid", x1: x(tick), x2: x(tick), y1: UPPER, y2: TALL - LOWER }, svg);
       if (wide - RIGHT - x(tick) < named) continue;
-      make("text", { x: x(tick), y: TALL - 6, "text-anchor": "middle" }, svg).textContent = tickText(tick, vertical);
+      make("text", { x: x(tick), y: TALL - LOWER + 16, "text-anchor": "middle" }, svg).textContent = tickText(tick, vertical);
     }
     const horizontal = steps(least, most, 5, data.unit === "°" && most - least > 20);
     for (const tick of ticks(least, most, horizontal)) {
@@ -167,9 +172,11 @@ export class Chart {
     make("text", { class: "axis", x: wide - RIGHT, y: TALL - 6, "text-anchor": "end" }, svg).textContent = symbol;
     make("text", { class: "axis", x: LEFT - 6, y: 12, "text-anchor": "end" }, svg).textContent = data.unit === "1" ? "" : data.unit;
     data.lines.forEach((line, k) => {
-      let d = "", pen = false;
+      let d = "", pen = false, before = NaN;
       for (let sample = 0; sample < line.values.length; sample += 1) {
         const value = line.values[sample]!, across = (line.x ?? abscissa)[sample]!, known = Number.isFinite(value) && Number.isFinite(across);
+        if (!line.x && Math.abs(across - before) > 0.5 * Math.abs(high - low)) pen = false; // a turn is over
+        before = across;
         if (known) d += `${pen ? "L" : "M"}${digits(x(across))} ${digits(y(value))}`;
         pen = known;
       }

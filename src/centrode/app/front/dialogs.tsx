@@ -169,6 +169,10 @@ function SaveWindow() {
   );
 }
 
+// Formats that are called by a name.
+const NAMED: Record<string, string> = { python: "Python", javascript: "JavaScript", FCMacro: "FCMacro" };
+const formatName = (format: string): string => NAMED[format] ?? format.toUpperCase();
+
 // --- exports -----------------------------------------------------------------------------------------------------------
 const running = signal("");
 
@@ -205,7 +209,7 @@ function ExportWindow() {
         {all.map((one) => (
           <div class="export-row"><span>{one.title}</span>
             <span class="formats">{one.formats.map((format) => (
-              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${format.toUpperCase()}`} onClick={() => void exportFile(one.name, format)}>{format.toUpperCase()}</button>
+              <button type="button" disabled={running.value !== ""} aria-busy={running.value === `${one.name} ${format}`} aria-label={`${one.title}: ${formatName(format)}`} onClick={() => void exportFile(one.name, format)}>{formatName(format)}</button>
             ))}</span>
           </div>
         ))}

@@ -158,7 +158,7 @@ function NumbersTable() {
     ? Math.hypot(...Array.from({ length: now.axes }, (_, axis) => now.value(line.array, sample, line.thing, axis)))
     : now.value(line.array, sample, line.thing, line.axis)) * course.factor })));
   return (
-    <div class="table scroll" tabindex={0} role="region" aria-label={say("numbers")}>
+    <div class="table scroll long" tabindex={0} role="region" aria-label={say("numbers")}>
       <table>
         <thead><tr><th scope="col">{say("quantity")}</th><th scope="col" class="n">{say("value")}</th></tr></thead>
         <tbody>{rows.map((row) => <tr><th scope="row">{row.label}</th><td class="n">{withUnit(fixed(row.value, Math.max(1, Math.abs(row.value))), row.unit)}</td></tr>)}</tbody>

@@ -23,11 +23,10 @@ export function Markup({ text, className, label }: { text: string; className: st
     }
     const element = holder.current!;
     element.replaceChildren(...parsed.body.childNodes);
-    if (className !== "formula") return undefined;
     // What is wider than its place is scrolled, by keyboard too.
     const watch = new ResizeObserver(() => {
       const wide = element.scrollWidth > element.clientWidth + 1;
-      for (const [name, value] of [["tabindex", "0"], ["role", "region"], ["aria-label", say("formula")]] as const) {
+      for (const [name, value] of [["tabindex", "0"], ["role", "region"], ["aria-label", label ?? say("formula")]] as const) {
         if (wide) element.setAttribute(name, value);
         else element.removeAttribute(name);
       }
@@ -38,15 +37,28 @@ export function Markup({ text, className, label }: { text: string; className: st
   return <div class={className} ref={holder} />;
 }
 
-const dark = matchMedia("(prefers-color-scheme: dark)");
+const night = matchMedia("(prefers-color-scheme: dark)"), dark = signal(night.matches);
+night.addEventListener("change", () => { dark.value = night.matches; });
+
+// Symbols such as R_n with their indices lowered; names of the description stay as they are written.
+const SYMBOL = /(?<![\p{L}\p{N}_])(\p{L}[ⁿᵗʳ′]*_[\p{L}\p{N}]+)(?![\p{L}\p{N}_])/u;
+function Symbols({ text }: { text: string }) {
+  const now = scene.value, own = (name: string): boolean => [...(now?.points ?? []), ...(now?.links ?? []), ...(now?.guides ?? [])].some((one) => one.name === name);
+  return <>{text.split(SYMBOL).map((part, k) => {
+    const [sign, index] = part.split("_");
+    return k % 2 && !own(part) ? <>{sign}<sub>{index}</sub></> : part;
+  })}</>;
+}
 
 function Facts({ facts }: { facts: { label: string; text: string }[] }) {
   return (
     <dl class="facts">
-      {facts.map((fact) => <div><dt>{fact.label}</dt><dd>{typeset(fact.text)}</dd></div>)}
+      {facts.map((fact) => <div><dt>{fact.label}</dt><dd><Symbols text={typeset(fact.text)} /></dd></div>)}
     </dl>
   );
 }
+
+const LONG = 40; // rows: longer tables are scrolled in a place of their own
 
 function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
   const greatest = block.columns.map((_column, k) => Math.max(0, ...block.rows.slice(0, 2000).map((row) => (typeof row[k] === "number" && Number.isFinite(row[k]) ? Math.abs(row[k] as number) : 0))));
@@ -54,7 +66,7 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
   return (
     <>
       {block.title && <p class="caption">{block.title}</p>}
-      <div class="table scroll" tabindex={0} role="region" aria-label={block.title || say("table")}>
+      <div class={shown.length > LONG ? "table scroll long" : "table scroll"} tabindex={0} role="region" aria-label={block.title || say("table")}>
         <table>
           <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}>{column.head}{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
@@ -112,13 +124,13 @@ function BlockView({ block }: { block: Block }) {
     case "heading":
       return <h3>{block.text}</h3>;
     case "paragraph":
-      return <p class={block.item ? "item" : ""}>{typeset(sentence(block.text))}</p>;
+      return <p class={block.item ? "item" : ""}><Symbols text={typeset(block.item ? block.text : sentence(block.text))} /></p>;
     case "formula":
       return block.mathml ? <Markup className="formula" text={block.mathml} /> : <pre class="formula" tabindex={0} role="region" aria-label={say("formula")}>{typeset(block.text ?? "")}</pre>;
     case "picture":
       return (
         <figure>
-          <Markup className={block.dark && dark.matches ? "paper dark" : "paper"} text={block.dark && dark.matches ? block.dark : block.svg} label={block.alt || block.title || say("picture")} />
+          <Markup className={block.dark && dark.value ? "paper dark" : "paper"} text={block.dark && dark.value ? block.dark : block.svg} label={block.alt || block.title || say("picture")} />
           {block.title && <figcaption>{block.title}</figcaption>}
         </figure>
       );
@@ -141,7 +153,7 @@ function BlockView({ block }: { block: Block }) {
       }
       return (
         <figure class="chart">
-          {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit">{block.y.label}</span>}</figcaption>}
+          {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
           {kept.current.data.map((data) => <ChartView data={data} cursor={follows} key={String(follows)} />)}
         </figure>
       );

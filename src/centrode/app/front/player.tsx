@@ -1,6 +1,6 @@
 // Plays the motion by time and step by step; the cursor of all curves is its place.
 import { computed, effect } from "@preact/signals";
-import { camSamples } from "./cam";
+import { camAngles, camSamples } from "./cam";
 import { Icon } from "./icons";
 import { signed } from "./motion_panel";
 import { motion, place, playing, scene, shows, speed } from "./state";
@@ -8,7 +8,7 @@ import { fixed, say, withUnit } from "./words";
 
 const SECONDS = 6; // one way at speed 1
 const samples = computed(() => (scene.value?.kind === "cam" ? camSamples(scene.value.cam) : motion.value?.last ?? 0));
-const whole = computed(() => (scene.value?.kind === "cam" ? true : motion.value?.closed ?? false));
+const whole = computed(() => (scene.value?.kind === "cam" ? !scene.value.cam?.open : motion.value?.closed ?? false));
 let forward = 1;
 
 const within = (at: number): number => Math.min(samples.value, Math.max(0, at));
@@ -48,8 +48,8 @@ effect(() => {
 const told = computed(() => {
   const now = motion.value;
   if (scene.value?.kind === "cam") {
-    const angles = scene.value.cam?.displacement?.angle ?? [], angle = scene.value.display?.angle ?? { unit: "rad", factor: 1 };
-    return { text: `φ = ${withUnit(fixed((angles[Math.round(place.value)] ?? NaN) * angle.factor, 360, 4), signed(angle.unit))}`, bad: false };
+    const angles = camAngles(scene.value.cam), angle = scene.value.display?.angle ?? { unit: "rad", factor: 1 };
+    return angles.length === 0 ? { text: "", bad: false } : { text: `φ = ${withUnit(fixed((angles[Math.round(place.value)] ?? NaN) * angle.factor, 360, 4), signed(angle.unit))}`, bad: false };
   }
   if (!now) return { text: "", bad: false };
   const sample = Math.round(place.value), word = now.word(sample), greatest = Math.max(Math.abs(now.drive[0]!), Math.abs(now.drive[now.last]!)) * now.factor;

@@ -92,12 +92,21 @@ export interface Segment {
   laws?: string[];
   names?: Record<string, string>;
 }
+export interface CamFollower {
+  sense: 1 | -1; // counter-clockwise or clockwise
+  contact: "knife" | "roller" | "flat";
+  places: (number | null)[][] | null; // sample by sample: of the roller's centre, the edge, the foot on a face
+  faces: (number | null)[][] | null; // ends of what is straight of a flat face
+  pivot: Place | null;
+}
 export interface CamScene {
   profile: Place[];
   pitch?: Place[] | null;
   base: number | null;
   roller?: number | null;
   displacement: { missing?: string; repair?: string; unit?: string; angle?: number[]; lift?: (number | null)[]; velocity?: (number | null)[]; acceleration?: (number | null)[] } | null;
+  follower?: CamFollower | null; // of a plate cam
+  carrier?: number[] | null; // angles of what leads a roller around a cam that stands
   segments: Segment[];
   open?: boolean; // whether the path of the roller does not return
   missing?: string;

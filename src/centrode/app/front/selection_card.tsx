@@ -14,6 +14,10 @@ export async function removeSelected(): Promise<void> {
 export async function duplicateSelected(): Promise<void> {
   const now = scene.value;
   if (!selection.value.length || !now) return;
+  if (now.kind === "sphere") { // the server turns the copy aside
+    await edit({ do: "duplicate", objects: selection.value });
+    return;
+  }
   const at = now.points.flatMap((point) => (point.at ? [point.at] : [])), wide = Math.max(...at.map((one) => one[0]!)) - Math.min(...at.map((one) => one[0]!));
   await edit({ do: "duplicate", objects: selection.value, by: [0.15 * (wide || 1), -0.15 * (wide || 1)] });
 }
@@ -21,6 +25,10 @@ export async function duplicateSelected(): Promise<void> {
 export async function mirrorSelected(upright: boolean): Promise<void> {
   const now = scene.value;
   if (!selection.value.length || !now) return;
+  if (now.kind === "sphere") {
+    await edit({ do: "mirror", objects: selection.value, axis: upright ? "y" : "x" });
+    return;
+  }
   const names = new Set([...selection.value, ...now.links.filter((one) => selection.value.includes(one.name)).flatMap((one) => one.points)]);
   const at = now.points.filter((point) => names.has(point.name) && point.at).map((point) => point.at!);
   if (!at.length) return;
@@ -105,9 +113,12 @@ export function SelectionCard() {
       )}
       {first && (
         <div class="buttons">
-          <button type="button" onClick={() => void duplicateSelected()}>{say("duplicate")}</button>
-          <button type="button" onClick={() => void mirrorSelected(true)}>{say("mirror_upright")}</button>
-          <button type="button" onClick={() => void mirrorSelected(false)}>{say("mirror_level")}</button>
+          {names.length === 2 && names.every((name) => now.points.some((point) => point.name === name)) && (
+            <button type="button" data-do="join" onClick={() => void edit({ do: "join", points: names })}>{say("join")}</button>
+          )}
+          <button type="button" data-do="duplicate" onClick={() => void duplicateSelected()}>{say("duplicate")}</button>
+          <button type="button" data-do="mirror-upright" onClick={() => void mirrorSelected(true)}>{say("mirror_upright")}</button>
+          <button type="button" data-do="mirror-level" onClick={() => void mirrorSelected(false)}>{say("mirror_level")}</button>
           <button type="button" onClick={() => void removeSelected()}>{say("delete")}</button>
         </div>
       )}

@@ -536,12 +536,16 @@ export class Stage {
     const point = scene.value?.points.find((one) => one.name === name), allowed = point?.handles[how] ?? false;
     const touch = event.pointerType === "touch", grip = this.flatOf(name), off = grip ? minus(this.begun, grip) : [0, 0];
     const drag = new Drag(name, how, (frame) => this.follow(frame));
+    const onto = (free: Place): string | null => {
+      const other = how === "edit" ? this.target(free, touch, "point") : null;
+      return other && other.name !== name ? other.name : null;
+    };
     const goal = (at: Place, last: { altKey: boolean } | null): Place => {
       const free = minus(at, off);
       if (this.spherical && how === "move") return this.globe.back(free, this.where().place(name));
       if (how === "move") return this.plane.back(free);
-      const onto = this.target(free, touch, "point");
-      return onto && onto.name !== name ? this.where().place(onto.name)! : this.meantFree(free, last);
+      const other = onto(free);
+      return other ? this.where().place(other)! : this.meantFree(free, last);
     };
     return {
       move: (at, last) => {
@@ -558,7 +562,10 @@ export class Stage {
           this.choose(chosen, last?.shiftKey ?? false);
           return;
         }
-        if (allowed && begun && last) void this.drop(drag, goal(this.at(last), last));
+        if (!(allowed && begun && last)) return;
+        const other = onto(minus(this.at(last), off));
+        if (other) void this.join(drag, name, other);
+        else void this.drop(drag, goal(this.at(last), last));
       },
       cancel: () => {
         this.svg.classList.remove("held");
@@ -628,6 +635,15 @@ export class Stage {
         if (answer.text !== undefined) state.accept(answer);
       });
     }
+    this.draw();
+  }
+
+  // A joint that is dropped on another one becomes one with it.
+  private async join(drag: Drag, name: string, other: string): Promise<void> {
+    drag.stop();
+    const answer = await edit({ do: "join", points: [name, other] });
+    this.live = null;
+    if (answer) selection.value = [answer.changed?.at(-1) ?? other].filter((one) => scene.value?.points.some((point) => point.name === one));
     this.draw();
   }
 

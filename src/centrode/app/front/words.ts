@@ -49,14 +49,15 @@ export const withUnit = (text: string, unit?: string | null): string => {
   return label ? `${text}${label === "°" ? "" : "\u00a0"}${label}` : text;
 };
 
-// A clause of the server's as a sentence.
+// A clause of the server's as a sentence; what begins with a symbol or a function keeps its letter.
+const FORMULA = /^\S*[\d_(=|]|^\S+ =/;
 export const sentence = (text: string | null | undefined): string => {
   const plain = (text ?? "").trim();
-  return plain && plain[0]!.toLocaleUpperCase() + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
+  return plain && (FORMULA.test(plain) ? plain[0]! : plain[0]!.toLocaleUpperCase()) + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
 };
 export const sentences = (...texts: (string | null | undefined)[]): string => texts.map(sentence).filter(Boolean).join(" ");
 
 // What a terminal spells with the signs of a keyboard, with those of print.
 export const typeset = (text: string): string =>
-  text.replace(/ -> /g, " → ").replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
+  text.replace(/ -> /g, " → ").replace(/(?<![\d.,])0(?:[.,]0+)?e[+-]?\d+\b/g, "0").replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
     .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");

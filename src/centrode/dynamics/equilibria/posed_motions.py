@@ -14,7 +14,7 @@ from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.motion_problem import MotionNames
 from centrode.dynamics.forward_dynamics.motion_steps import DURATION, MotionSteps
 from centrode.dynamics.forward_dynamics.trajectory import trajectory_of
-from centrode.dynamics.simulation.multibody import MultibodySetting, multibody_dataset
+from centrode.dynamics.simulation.multibody_motion import MultibodySetting, multibody_dataset
 from centrode.dynamics.state import Centre, Mass, Radial, Spread
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import Simulation

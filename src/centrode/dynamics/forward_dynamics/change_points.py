@@ -19,10 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.numerics.complex_graphs import IMAGINARY, Parts, complex_parts, product
+from centrode.numerics.dormand_prince import C
 from centrode.numerics.executors import MACHINE_CODE, choose_executor
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.initial_value_problems import END, SAFETY, SMALLEST, TIME, C, InitialValueProblem
+from centrode.numerics.initial_value_problems import END, SAFETY, SMALLEST, TIME, InitialValueProblem
 from centrode.numerics.integrators import integrator_of
 from centrode.numerics.python_integrations import PythonIntegration
 
@@ -50,6 +51,7 @@ class Detour:
     coefficients : (followed, powers) of ((t - centre) / radius)
     singular : size of the coefficients of negative powers, over that of what changes
     unresolved : size of the last coefficients, in the same measure
+    short : how long before the end of the disc it is left [s]
     """
 
     centre: float
@@ -57,6 +59,7 @@ class Detour:
     coefficients: Array
     singular: float
     unresolved: float
+    short: float = 0.0
 
     @property
     def begin(self) -> float:
@@ -66,7 +69,7 @@ class Detour:
     @property
     def end(self) -> float:
         """Time behind."""
-        return self.centre + self.radius
+        return self.centre + self.radius - self.short
 
     @property
     def is_analytic(self) -> bool:

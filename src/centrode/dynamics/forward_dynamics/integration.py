@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from importlib import import_module
 from math import inf, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import OdeSolution, Radau
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
@@ -26,12 +28,14 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
     LIMIT,
     LOOKED,
     NEVER,
+    PASSED,
     MotionNames,
     motion_problem,
 )
 from centrode.dynamics.forward_dynamics.motion_steps import (
     BLOW_UP,
     CHANGE_POINT,
+    CONDITION_ENDS,
     CROSSING,
     DURATION,
     NEAR_MISS,
@@ -50,11 +54,15 @@ from centrode.numerics.initial_value_problems import (
     InitialValueProblem,
 )
 from centrode.numerics.integrators import Integrator, integrator_of
+from centrode.numerics.python_functions import Function
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+# explicit steps need no SciPy, which takes longer to load than most motions take
+_integrate = partial(import_module, "scipy.integrate")
 
 ROWS, MOST_ROWS = 1024, 65536
 """Steps in one call of the integrator: few at first, as room is made for all of them."""
@@ -100,10 +108,22 @@ class MotionIntegration:
         """The initial value problem, its numbers being parameters."""
         return motion_problem(self.variables.equations, self.variables.parameters)
 
+    @cached_property
+    def contact_function(self) -> Function:
+        """What contacts feel at one state; see `event_steps.contact_function`."""
+        return contact_function(self.variables.equations, self.names, self.problem)
+
+    @cached_property
+    def closing_function(self) -> Function:
+        """What a state ends with behind an event, on plain numbers."""
+        return PythonIntegration(self.problem).closing
+
     def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
         """The same problem for equations of the same structure with other numbers."""
         other = MotionIntegration(equations)
-        for name in ("variables", "names", "problem", "_half_circles"):
+        shared = ("variables", "names", "problem", "_half_circles")
+        shared += ("contact_function", "closing_function") if self.equations.has_events else ()
+        for name in shared:
             other.__dict__[name] = getattr(self, name)
         return other
 
@@ -129,8 +149,11 @@ class MotionIntegration:
         numbers = self.variables.values(self.equations)
         return np.concatenate([rows, np.broadcast_to(numbers, (len(numbers), lanes))])
 
-    def rate(self, start: InitialState) -> float:
-        """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest."""
+    def rate(self, start: InitialState, duration: float = inf) -> float:
+        """What speeds are compared with [1/s]: those at the start, and what the accelerations make of a rest.
+
+        In equilibrium both are rounding: then what counts is what would be seen at the end of a duration [s].
+        """
         units = units_of(self.equations.tree, self.equations.numbers)
         values = self.equations.tree.values(ARRAYS, list(start.coordinates))
         with np.errstate(all="ignore"):
@@ -138,7 +161,7 @@ class MotionIntegration:
             accelerations, _forces, _flags = self.equations.accelerations(ARRAYS, terms)
         fast = float(np.max(np.abs(start.speeds) / units, initial=0.0))
         bent = float(np.max(np.abs(np.array(accelerations, dtype=np.float64)) / units, initial=0.0))
-        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0)
+        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0, 1.0 / duration)
         return rate if rate > 0.0 else 1.0
 
     def carried_values(self, start: InitialState) -> Array:
@@ -147,6 +170,7 @@ class MotionIntegration:
         found = dict.fromkeys(self.problem.carried, 0.0)
         found |= dict(zip(names.coordinates, start.coordinates, strict=True))
         found |= dict(zip(names.speeds, start.speeds, strict=True))
+        found |= dict(zip(names.states, states_of(self.equations.controls), strict=True))
         closing = evaluate(
             self.problem.of_closing,
             found
@@ -154,7 +178,7 @@ class MotionIntegration:
             | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
         )
         # rotors and flags are those of the start; the start itself is closed already
-        kept = (*names.coordinates, *names.speeds, *names.works)
+        kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
         return np.array(
             [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
         )
@@ -174,35 +198,58 @@ class MotionIntegration:
         duration [s], tolerance : of the error of a step, relative to what moves
         progress : called with the time reached [s]
         """
-        take, rate = self.integrator(executor), self.rate(start)
+        take, rate = self.integrator(executor), self.rate(start, duration)
         parameters = self.parameters(duration, tolerance, rate)
         first = min(duration, 0.01 / rate)
         state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
         kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
-        attempts, steps, room = 0, 0, ROWS
+        watch = EventWatch(self, take, parameters, rate) if self.equations.has_events else None
+        if watch is not None:
+            state = watch.begin(state)
+            kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
+        attempts, steps, room, rows = 0, 0, ROWS, np.empty((0, 0))
         ended, cause = DURATION, None
         guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
         events: list[Event] = []
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
-            rows = np.empty((room, len(kept[0][0])))
+            if len(rows) != room:
+                rows = np.empty((room, len(kept[0][0])))
+            pause = duration if watch is None else watch.next_release(float(state[0, 0]), duration)
+            parameters[CONTROLS.index(END), 0] = pause
             state = take.run(parameters, state, ATTEMPTS, rows)
             attempts += int(state[2, 0])
             written = int(state[3, 0])
             steps += written
-            kept.append(rows[:written])
+            kept.append(rows[:written].copy())
             time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
                 progress(time)
+            if watch is not None and state[guard, 0] >= PASSED:
+                # the step that went beyond the event is taken again
+                kept[-1] = kept[-1][:-1]
+                before = next(some[-1] for some in reversed(kept) if len(some))
+                row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
+                kept += [row[None], np.concatenate([state[:1, 0], state[HEADER:, 0]])[None]]
+                if ends:
+                    ended = CONDITION_ENDS
+                    break
+                continue
+            if watch is not None and time >= pause and pause < duration:
+                state = watch.release(state, time)
+                kept.append(np.concatenate([state[:1, 0], state[HEADER:, 0]])[None])
+                continue
             if time >= duration:
                 break
             if guard is not None and state[guard, 0] != 0.0:
                 back = self._step_back(take, parameters, state, kept, detours, rate)
-                passed = self._pass_change_point(parameters, state if back is None else back[0], tolerance)
+                passed = self._pass_change_point(
+                    parameters, state if back is None else back[0], tolerance, watch
+                )
                 if back is not None and not isinstance(passed, str) and passed[0] is not None:
                     state, kept = back
                 elif back is not None:
-                    passed = self._pass_change_point(parameters, state, tolerance)
+                    passed = self._pass_change_point(parameters, state, tolerance, watch)
                 if isinstance(passed, str):
                     ended, cause = CHANGE_POINT, passed
                     break
@@ -221,11 +268,7 @@ class MotionIntegration:
                 continue
             away = self._farthest(state, rate)
             if away > WILD:
-                ended = BLOW_UP
-                cause = _(
-                    "at {time:.9g} s something had moved {far:.3g} times the greatest length or as fast as that"
-                )
-                cause = cause.format(time=time, far=away)
+                ended, cause = BLOW_UP, self._wild_cause(state, away)
                 break
             if not size > parameters[CONTROLS.index(SMALLEST), 0]:
                 wild = not np.all(np.isfinite(state)) or away > WILD
@@ -238,6 +281,10 @@ class MotionIntegration:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
                 break
             room = min(4 * room, MOST_ROWS)
+        if watch is not None:
+            reached = float(kept[-1][-1, 0]) if len(kept[-1]) else duration
+            told = [one for one in watch.events if one.time <= reached]
+            events = sorted([*events, *told], key=lambda one: one.time)
         return MotionSteps(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
 
     def implicit_steps(
@@ -254,7 +301,9 @@ class MotionIntegration:
         Equations II, 2nd ed., 1996, section IV.8.)
         """
         followed = PythonIntegration(self.problem)
-        parameters = [float(x) for x in self.parameters(duration, tolerance, self.rate(start))[:, 0]]
+        parameters = [
+            float(x) for x in self.parameters(duration, tolerance, self.rate(start, duration))[:, 0]
+        ]
         carried = self.carried_values(start)
         names, count = self.names, len(self.problem.unknowns)
         angles = np.array(self.equations.tree.angles, dtype=np.intp)
@@ -263,6 +312,7 @@ class MotionIntegration:
             *range(*names.part(names.speeds).indices(count)),
         ]
         own += range(*names.part(names.works).indices(count))
+        own += range(*names.part(names.states).indices(count))
 
         def whole(y: Array) -> list[float]:
             values = carried.copy()
@@ -277,7 +327,9 @@ class MotionIntegration:
         def rates(t: float, y: Array) -> Array:
             return np.array(followed.rates([t, *parameters, *whole(y)]))[own]
 
-        solver = Radau(rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance)
+        solver = _integrate().Radau(
+            rates, 0.0, carried[own], duration, rtol=max(tolerance, 1e-12), atol=tolerance
+        )
         rows = [np.concatenate([[0.0], carried])]
         pieces = []
         ended, cause = DURATION, None
@@ -294,7 +346,7 @@ class MotionIntegration:
             if progress is not None:
                 progress(float(solver.t))
         reached = np.array(rows).T
-        followed_between = OdeSolution(reached[0], pieces)
+        followed_between = _integrate().OdeSolution(reached[0], pieces)
 
         def between(times: Array) -> Array:
             found = np.zeros((len(carried), len(times)))
@@ -367,7 +419,11 @@ class MotionIntegration:
         return before, rows
 
     def _pass_change_point(
-        self, parameters: Array, state: Array, tolerance: float
+        self,
+        parameters: Array,
+        state: Array,
+        tolerance: float,
+        watch: EventWatch | None = None,
     ) -> tuple[Detour | None, Event | None] | str:
         """Pass the change point ahead, if it is one; the state is that behind it then.
 
@@ -390,6 +446,13 @@ class MotionIntegration:
             state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
             return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
         count = len(self.problem.unknowns)
+        if watch is not None:
+            clear = watch.clear_until(detour, state[HEADER:, 0])
+            if clear is None:
+                # something happens before the change point is reached: it is integrated straight up to there
+                state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
+                return None, None
+            detour = replace(detour, short=detour.end - clear)
         before = self._energy(state[HEADER:, 0], time)
         landed = detour.at(np.array([detour.end]))[:, 0]
         values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(
@@ -414,6 +477,22 @@ class MotionIntegration:
         q, w = list(carried[names.part(names.coordinates)]), list(carried[names.part(names.speeds)])
         kinetic, potential = self.equations.energies(ARRAYS, self.equations.tree.values(ARRAYS, q), w, time)
         return float(kinetic), float(potential) - float(np.sum(carried[names.part(names.works)]))
+
+    def _wild_cause(self, state: Array, away: float) -> str:
+        """What has grown without bound, and the load that gives it most power."""
+        names, tree = self.names, self.equations.tree
+        q, w = (list(state[HEADER:, 0][names.part(kind)]) for kind in (names.coordinates, names.speeds))
+        with np.errstate(all="ignore"):
+            terms = self.equations.terms(ARRAYS, tree.values(ARRAYS, q), w, float(state[0, 0]))
+        sizes = np.abs(w) / units_of(tree, self.equations.numbers)
+        cause = _("at {time:.9g} s {part} had moved {far:.3g} times the greatest length or as fast as that")
+        part = tree.coordinates[int(np.argmax(np.nan_to_num(sizes, nan=np.inf)))].name
+        cause = cause.format(time=float(state[0, 0]), part=part, far=away)
+        powers = [float(power) for power in terms.powers]
+        if not powers or not max(powers) > 0.0:
+            return cause
+        load = self.equations.loads[int(np.argmax(powers))].label
+        return f"{cause}; " + _("the load that gives most power is {load}").format(load=load)
 
     def _fastest(self, state: Array) -> str:
         """Name of the coordinate whose speed changes most, or is the greatest."""

@@ -18,7 +18,7 @@ from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.trajectory import trajectory_points
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
-from centrode.dynamics.simulation.multibody import multibody_setting
+from centrode.dynamics.simulation.multibody_motion import multibody_setting
 from centrode.dynamics.state import length_unit
 from centrode.errors import InputError
 from centrode.kinematics.motion import vocabulary_variable
@@ -163,6 +163,15 @@ def _of_points(
         found[:, k] = rows.reshape(2, len(points), axes, n).transpose(0, 3, 1, 2)
     scaled = found * 1.0 / length_unit(free.mechanism)
     return scaled[0].transpose(1, 0, 2, 3), scaled[1].transpose(1, 0, 2, 3)
+
+
+def add_gradients(
+    mechanism: Mechanism, settings: Simulation, run: xr.Dataset, paths: Sequence[str], executor: str
+) -> xr.Dataset:
+    """A motion with its derivatives by numbers of the description."""
+    found = motion_gradients(mechanism, settings, tuple(paths), run["time"].values, executor)
+    numbers = np.array(found.paths, dtype=object)
+    return run.assign(gradient_variables(run, found)).assign_coords(number=numbers)
 
 
 def gradient_variables(run: xr.Dataset, gradients: MotionGradients) -> dict[str, Any]:

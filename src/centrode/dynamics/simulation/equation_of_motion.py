@@ -25,15 +25,15 @@ from centrode.dynamics.loads import (
 )
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer
+from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.state import DriveMotion, State
 from centrode.dynamics.steady_motion.cycle import NODES, resolve_panels
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
-from centrode.model.simulation import DRIVING_LAW_VARIABLES, MOST_TURNS, Simulation
+from centrode.model.simulation import MOST_TURNS
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.search import maxima_between
-from centrode.numerics.text_formula import TextFormula, compile_formula
 
 # Loads by what becomes of their work: potential energy, friction, or neither; and which follow formulas.
 
@@ -486,43 +486,7 @@ class PanelTracks:
             self.error = max(self.error, float(np.nanmax((apart / scale)[:, counted])))
 
 
-# What drives: a formula of time, value and speed of the drive, over numbers, arrays and expressions.
-
 NAN = float("nan")
-
-
-@dataclass(frozen=True)
-class Driving:
-    """Moment [N m or N] of a drive; `sense` is +1.0 or -1.0, that of the drive, in which the formula counts."""
-
-    formula: TextFormula
-    sense: float
-
-    @classmethod
-    def of(cls, settings: Simulation, sense: float) -> Driving:
-        """The drive that a simulation asks for."""
-        return cls(compile_formula(settings.law, DRIVING_LAW_VARIABLES, "[simulation] driving"), float(sense))
-
-    @property
-    def of_time(self) -> bool:
-        """Whether it depends on time."""
-        return "t" in self.formula.used
-
-    @property
-    def of_speed(self) -> bool:
-        """Whether it depends on the speed."""
-        return "v" in self.formula.used
-
-    def over(self, m: Any, t: Number, q: Number, rate: Number) -> Number:
-        """Generalised force at a rate of the drive's value, over any algebra."""
-        return self.sense * self.formula(m, t=t, q=q, v=self.sense * rate)
-
-    def at(self, t: float, q: float, rate: float) -> float:
-        """Generalised force of plain numbers t [s], q and rate; NaN where the formula has no value."""
-        try:
-            return float(self.over(SCALARS, float(t), float(q), float(rate)))
-        except (ArithmeticError, ValueError):
-            return NAN
 
 
 CREEP = 1e-200
@@ -746,7 +710,7 @@ class TrajectoryPiece:
 
 
 @dataclass
-class Trajectory:
+class ReducedTrajectory:
     """Pieces one after another, and how it ended.
 
     Attributes

@@ -1,19 +1,22 @@
 """The classical Runge-Kutta scheme of fourth order with equal steps, as sources integrate: no step ends at an event.
 
 A step needs four right sides of plain numbers, thousands of times: series of a panel are kept as tuples of their
-coefficients and evaluated by Horner's rule, which for so few numbers takes less time than arrays do.
+coefficients and evaluated by Horner's rule, which for so few numbers takes less time than arrays do. What laws make of
+their values is traced once and is a function of Python.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.loads import Situation
+from centrode.dynamics.forward_dynamics.broken_lines import broken_line_of
+from centrode.dynamics.loads import LoadTable, Situation
 from centrode.dynamics.simulation.equation_of_motion import (
     ALONG,
     BACKWARDS,
@@ -22,17 +25,17 @@ from centrode.dynamics.simulation.equation_of_motion import (
     FORMULAS,
     FORWARDS,
     INERTIA,
-    NAN,
     SLOPE,
     SORTS,
     SPEED,
     STATES,
+    TOLERANCE,
     VALUE,
     Ending,
     Field,
     FieldLeg,
     Occasion,
-    Trajectory,
+    ReducedTrajectory,
     TrajectoryPiece,
     too_far,
     without_value,
@@ -41,10 +44,9 @@ from centrode.dynamics.simulation.equation_of_motion import Array as States
 from centrode.dynamics.simulation.interpolation import Interpolant
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.numerics.operations import SCALARS
-
-if TYPE_CHECKING:
-    from centrode.dynamics.loads import LoadLaw
+from centrode.numerics.expressions import EXPRESSIONS, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.python_functions import Function, python_function
 
 Series: TypeAlias = tuple[float, ...]
 Slopes: TypeAlias = tuple[float, float, float, float]
@@ -52,6 +54,24 @@ Slopes: TypeAlias = tuple[float, float, float, float]
 
 TOLD = 256
 """Steps between two reports of progress."""
+
+
+NOTHING = -1
+"""Stands for a series that is zero."""
+
+
+@dataclass(frozen=True)
+class RightSide:
+    """A form of the right side: laws alone, so that panels share its function.
+
+    Attributes
+    ----------
+    places : of inertia, its slope, moments by sort, and what formulas ask for: numbers of series, or NOTHING
+    acting : numbers of the formulas that act, and the sense in which the coordinate of each goes
+    """
+
+    places: tuple[int, ...]
+    acting: tuple[tuple[int, float], ...]
 
 
 class StepSlopes:
@@ -67,8 +87,15 @@ class StepSlopes:
         self.sense = 0.0
         # an empty panel: the first state looks up its own
         self.low, self.high = 1.0, -1.0
-        drives = field.driving.formula.used
-        self.constant = None if drives else field.driving.at(0.0, 0.0, 0.0)
+        self.functions: dict[RightSide, Function] = {}
+        formulas = [(SORTS.index(term.sort), term.effort) for term in field.tracks.rows.formulas]
+        # a table looks rows up in arrays; as a formula it is compared with a row after the other
+        self.laws = [
+            (sort, broken_line_of(effort.amount) if isinstance(effort.amount, LoadTable) else effort.amount)
+            for sort, effort in formulas
+        ]
+        # a plain sum of friction resists the drive, whichever way it goes
+        self.resists = [effort.works is not None for _sort, effort in formulas]
 
     def at(self, t: float, value: float, rate: float) -> Slopes | None:
         """Slopes at a state; None beyond the range of the mechanism. MotionError where a formula has no value."""
@@ -80,31 +107,10 @@ class StepSlopes:
         if sense != self.sense or not self.low <= value < self.high:
             self._look_up(value, sense)
         s = self.factor * value + self.offset
-        inertia, slope = _value(self.inertia, s), _value(self.slope, s)
-        stored, friction, other = [_value(c, s) if c else 0.0 for c in self.moments]
-        if self.formulas:
-            loads = [stored, friction, other]
-            for place, along, moment in self._of_formulas(t, value, rate, s):
-                loads[place] += moment * along
-            stored, friction, other = loads
-        driving = self.field.driving.at(t, value, rate) if self.constant is None else self.constant
-        acceleration = (stored + friction + other + driving - 0.5 * slope * rate * rate) / inertia
-        if not isfinite(acceleration):
+        slopes = self.function([t, value, rate, *[_value(c, s) for c in self.series], *self.constants])
+        if not isfinite(slopes[0]):
             raise without_value(t, value)
-        return acceleration, driving * rate, friction * rate, other * rate
-
-    def _of_formulas(self, t: float, value: float, rate: float, s: float) -> list[tuple[int, float, float]]:
-        """Sort, derivative of what it works along, and amount of each load by a formula."""
-        found = []
-        for place, law, sense, (coordinate, speed, along) in self.formulas:
-            x = _value(coordinate, s) if coordinate else 0.0
-            v = _value(speed, s) * rate if speed else 0.0
-            try:
-                amount = float(law(Situation(t, value, x, v, sense, SCALARS)))
-            except (ArithmeticError, ValueError):
-                amount = NAN
-            found.append((place, _value(along, s), amount))
-        return found
+        return slopes
 
     def _look_up(self, value: float, sense: float) -> None:
         """The panel of a value that is passed in a sense."""
@@ -121,32 +127,63 @@ class StepSlopes:
         self.offset = self.factor * (shift - 0.5 * (low + high))
         self.sense = sense
         self.low, self.high = max(low - shift, leg.low), min(high - shift, leg.high)
-        self.inertia, self.slope = _series(powers[INERTIA]), _series(powers[SLOPE])
         first = FORWARDS if sense > 0.0 else BACKWARDS
-        self.moments = tuple(_series(row) for row in powers[first : first + len(SORTS)])
-        self.formulas: list[tuple[int, LoadLaw, float, tuple[Series, Series, Series]]] = []
-        for j, term in enumerate(self.field.tracks.rows.formulas):
-            if not leg.gates[j]:
-                continue
-            law, own = term.effort.amount, powers[FORMULAS + EACH * j :]
-            # what the law does not look at is not computed; a plain sum of friction resists the drive, whichever way
-            rows = (
-                _series(own[COORDINATE]) if "x" in law.uses else (),
-                _series(own[SPEED]) if "v" in law.uses else (),
-                _series(own[ALONG] * (sense if term.effort.works is not None else 1.0)),
-            )
-            self.formulas.append((SORTS.index(term.sort), law, leg.senses[j], rows))
+        rows = [INERTIA, SLOPE, *range(first, first + len(SORTS))]
+        acting = []
+        for j, (_sort, law) in enumerate(self.laws):
+            if leg.gates[j]:
+                own = FORMULAS + EACH * j
+                if self.resists[j]:
+                    powers[own + ALONG] *= sense
+                # what the law does not look at is not computed
+                powers[own + COORDINATE] *= "x" in law.uses
+                powers[own + SPEED] *= "v" in law.uses
+                acting.append((j, leg.senses[j]))
+                rows += [own + COORDINATE, own + SPEED, own + ALONG]
+        self._choose_function([_series(powers[row]) for row in rows], tuple(acting))
+
+    def _choose_function(self, rows: list[Series], acting: tuple[tuple[int, float], ...]) -> None:
+        """What is evaluated on a panel: each series once, and the function of their values."""
+        # a joint that a load turns in often moves as what the load works along does, or as another one
+        self.series = list(dict.fromkeys(row for row in rows if len(row) > 1))
+        single = list(dict.fromkeys(row for row in rows if len(row) == 1))
+        self.constants = [row[0] for row in single]
+        places = {row: k for k, row in enumerate([*self.series, *single])}
+        side = RightSide(tuple(places.get(row, NOTHING) for row in rows), acting)
+        if side not in self.functions:
+            self.functions[side] = self._traced(side)
+        self.function = self.functions[side]
+
+    def _traced(self, side: RightSide) -> Function:
+        """A function of time, value and rate of the drive and the values of the series, laws and all."""
+        t, q, rate = variable("t"), variable("q"), variable("rate")
+        count = max(side.places) + 1
+        known = [variable(f"series {k}") for k in range(count)]
+        inertia, slope, *moments = [0.0 if k == NOTHING else known[k] for k in side.places]
+        loads = moments[: len(SORTS)]
+        for (j, sense), (x, speed, along) in zip(
+            side.acting, zip(*[iter(moments[len(SORTS) :])] * 3, strict=True), strict=True
+        ):
+            sort, law = self.laws[j]
+            loads[sort] = loads[sort] + law(Situation(t, q, x, speed * rate, sense, EXPRESSIONS)) * along
+        driving = self.field.driving.over(EXPRESSIONS, t, q, rate)
+        stored, friction, other = loads
+        acceleration = (stored + friction + other + driving - 0.5 * slope * rate * rate) / inertia
+        outputs = (acceleration, driving * rate, friction * rate, other * rate)
+        graph = Graph.of({str(k): each for k, each in enumerate(outputs)})
+        return python_function(graph, ["t", "q", "rate", *(f"series {k}" for k in range(count))])
 
 
 def _series(coefficients: States) -> Series:
-    """The coefficients of a series; of one that is zero none."""
-    return tuple(coefficients.tolist()) if coefficients.any() else ()
+    """The coefficients of a series: all of them, one of a constant, of one that is zero none."""
+    if not coefficients.any():
+        return ()
+    first, rest = float(coefficients[0]), float(np.sum(np.abs(coefficients[1:])))
+    return (first,) if rest <= TOLERANCE * abs(first) else tuple(coefficients.tolist())
 
 
 def _value(series: Series, s: float) -> float:
-    """A series of `NODES` coefficients, or of none, at a place; Horner's rule in a loop would take twice as long."""
-    if not series:
-        return 0.0
+    """A series of `NODES` coefficients at a place; Horner's rule in a loop would take twice as long."""
     a, b, c, d, e, f, g, h, i, j, k, m = series
     return a + s * (
         b + s * (c + s * (d + s * (e + s * (f + s * (g + s * (h + s * (i + s * (j + s * (k + s * m)))))))))
@@ -160,7 +197,7 @@ def fixed_steps(
     duration: float,
     steps: int,
     tell: Callable[[float], None] | None = None,
-) -> Trajectory:
+) -> ReducedTrajectory:
     """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
     step = duration / steps
     states = np.empty((STATES, steps + 1))
@@ -221,7 +258,7 @@ def _next_state(slopes: StepSlopes, t: float, y: Series, h: float) -> Series | N
 
 def _trajectory_of_states(
     field: Field, found: States, step: float, ended: Ending, evaluations: int
-) -> Trajectory:
+) -> ReducedTrajectory:
     """States (STATES, steps + 1) at even times as a course; between two steps an interpolant of the same order."""
     count = found.shape[1] - 1
     if ended in ("limit", "change point") and count == 0:
@@ -243,10 +280,10 @@ def _trajectory_of_states(
         last = float(found[VALUE, -1])
         occasions = [Occasion(ended, count * step, last if ended == "limit" else field.tracks.end(last))]
     piece = TrajectoryPiece(0.0, count * step, Interpolant(found, step, slopes), 1.0)
-    return Trajectory([piece], occasions, ended, evaluations, "runge-kutta-4")
+    return ReducedTrajectory([piece], occasions, ended, evaluations, "runge-kutta-4")
 
 
-def even_times(course: Trajectory, step: float, samples: int) -> States:
+def even_times(course: ReducedTrajectory, step: float, samples: int) -> States:
     """Times of steps, as evenly spaced as may be."""
     count = round(course.last / step)
     return np.unique(np.rint(np.linspace(0, count, samples))) * step

@@ -30,7 +30,7 @@ from centrode.dynamics.simulation.equation_of_motion import (
     Field,
     FieldLeg,
     Occasion,
-    Trajectory,
+    ReducedTrajectory,
     TrajectoryPiece,
     too_far,
     without_value,
@@ -163,7 +163,7 @@ class Watch:
 
     field: Field
     until: Until
-    course: Trajectory
+    course: ReducedTrajectory
     stiff: bool
     tell: Callable[[float], None] | None
     most: int
@@ -305,13 +305,13 @@ class Stepper:
     ) -> None:
         self.field = field
         self.until = until
-        self.course = Trajectory(scheme="stiff" if stiff else "adaptive")
+        self.course = ReducedTrajectory(scheme="stiff" if stiff else "adaptive")
         self.watch = Watch(field, until, self.course, stiff, tell, most)
         self.solvers = Solvers(field, self.watch, until.time, tolerance)
         self.sense = self.last = 0.0
         self.idle = 0
 
-    def run(self, value: float, rate: float) -> Trajectory:
+    def run(self, value: float, rate: float) -> ReducedTrajectory:
         """The course from a value and a rate at time zero; what is done is kept when it is interrupted."""
         state = np.array([value, rate, *[0.0] * (STATES - 2)])
         self.start = self.watch.start = value

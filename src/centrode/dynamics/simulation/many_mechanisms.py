@@ -17,7 +17,7 @@ from centrode.dynamics.forward_dynamics.batches import (
     integrate_many,
     numbers_that_vary,
 )
-from centrode.dynamics.simulation.multibody import (
+from centrode.dynamics.simulation.multibody_motion import (
     MultibodySetting,
     coordinate_names,
     coordinate_variable,

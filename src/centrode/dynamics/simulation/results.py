@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.dynamics.masses import has_masses_or_loads
-from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, equations_for
-from centrode.dynamics.simulation.simulate import Tell, simulate
+from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, Tell, equations_for
+from centrode.dynamics.simulation.simulate import simulate
 from centrode.dynamics.simulation.steady_state import Regime, steady_regime
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.locale import _
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
 
 # motions by one drive need nothing of the other route
-_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
+_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody_motion")
 _return_maps = functools.partial(importlib.import_module, "centrode.dynamics.sensitivities.return_map")
 
 
@@ -242,13 +242,13 @@ def check_ended(results: SimulationResults) -> None:
 
 def _check_multibody(run: xr.Dataset) -> None:
     """Raise MotionError where the equations of all links did not get to the end."""
-    if run.attrs["ended"] == "duration":
+    if run.attrs["ended"] in ("duration", "event"):
         return
     time = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
     cause = str(run.attrs["cause"])
     what = {
-        "change point": _("it reaches a change point that it does not pass, after {time:.6g} s: {cause}"),
-        "blow-up": _("the motion grows beyond all bounds after {time:.6g} s: {cause}"),
+        "change point": _("it reaches a change point that it does not pass: {cause}"),
+        "blow-up": _("the motion grows beyond all bounds: {cause}"),
     }.get(run.attrs["ended"], _("it is broken off after {time:.6g} s: {cause}"))
     repair = _("give a shorter time, or look at what acts there: loads, masses, speeds at the start")
     raise MotionError("", what.format(time=time, cause=cause), repair)

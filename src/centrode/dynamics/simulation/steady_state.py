@@ -12,9 +12,9 @@ from math import floor, inf, tau
 
 import numpy as np
 
-from centrode.dynamics.simulation.equation_of_motion import OF_DRIVE, RATE, VALUE, Field, Trajectory
+from centrode.dynamics.simulation.equation_of_motion import OF_DRIVE, RATE, VALUE, Field, ReducedTrajectory
 from centrode.dynamics.simulation.integrator import Stepper, Until
-from centrode.dynamics.simulation.simulate import Setting, setting_of
+from centrode.dynamics.simulation.reduced_motion import ReducedSetting, reduced_setting
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -38,7 +38,7 @@ PROBES = tau * np.array([0.0133, 0.291, 0.618, 0.911])
 class ReturnMap:
     """The return map of a setting."""
 
-    def __init__(self, setting: Setting, period: float) -> None:
+    def __init__(self, setting: ReducedSetting, period: float) -> None:
         self.setting, self.period = setting, period
         self.count = 0
 
@@ -47,8 +47,8 @@ class ReturnMap:
         course = self.course(speed)
         return self._speed(course) if course.ended == "turns" else np.nan
 
-    def course(self, speed: float) -> Trajectory:
-        """Trajectory over one period from a speed at the section."""
+    def course(self, speed: float) -> ReducedTrajectory:
+        """ReducedTrajectory over one period from a speed at the section."""
         self.count += 1
         return self._run(speed, 1)
 
@@ -68,18 +68,18 @@ class ReturnMap:
             )
         return self._speed(course)
 
-    def _run(self, speed: float, periods: int) -> Trajectory:
+    def _run(self, speed: float, periods: int) -> ReducedTrajectory:
         setting = self.setting
         stiff = setting.settings.scheme == "stiff"
         until = Until(inf, periods * self.period)
         stepper = Stepper(setting.field, until, TOLERANCE, stiff, most=MOST_STEPS)
         return stepper.run(setting.start, setting.rows.sense * speed)
 
-    def _speed(self, course: Trajectory) -> float:
+    def _speed(self, course: ReducedTrajectory) -> float:
         return float(course.at(np.array([course.last]))[0][RATE, 0]) * self.setting.rows.sense
 
 
-def period_of(setting: Setting) -> float:
+def period_of(setting: ReducedSetting) -> float:
     """Angle after which everything repeats."""
     field = setting.field
     if field.of_time:
@@ -224,10 +224,10 @@ def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> R
     MotionError
         It does not turn all the way round, comes to rest, or its speed does not settle.
     """
-    return steady_state_of(setting_of(mechanism, settings))
+    return steady_state_of(reduced_setting(mechanism, settings))
 
 
-def steady_state_of(setting: Setting) -> Regime:
+def steady_state_of(setting: ReducedSetting) -> Regime:
     """The steady regime that a setting runs up to; see `steady_regime`."""
     period = period_of(setting)
     maps = ReturnMap(setting, period)
@@ -246,7 +246,7 @@ def steady_state_of(setting: Setting) -> Regime:
 
 
 def _steady_state(
-    setting: Setting, course: Trajectory, speed: float, multiplier: float, maps: ReturnMap
+    setting: ReducedSetting, course: ReducedTrajectory, speed: float, multiplier: float, maps: ReturnMap
 ) -> Regime:
     sense, period = setting.rows.sense, maps.period
     least, greatest = (_extreme(course, sense, sign) for sign in (-1.0, 1.0))
@@ -279,7 +279,7 @@ def _in_turn(value: float, start: float, period: float, sense: float) -> float:
     return start + sense * (turned - period * floor(turned / period))
 
 
-def _extreme(course: Trajectory, sense: float, sign: float) -> tuple[float, float]:
+def _extreme(course: ReducedTrajectory, sense: float, sign: float) -> tuple[float, float]:
     """Time and greatest value of `sign` times the speed; the speed there."""
     nodes = np.linspace(course.first, course.last, PARTS)
     times, speeds = tops(lambda t: sign * sense * course.at(t)[0][RATE], nodes, most=1)

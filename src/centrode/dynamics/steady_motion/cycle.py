@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import tau
@@ -18,7 +18,9 @@ from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
+from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
+from centrode.model.reading import FRAME
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.text_formula import TextFormula
 
@@ -406,15 +408,43 @@ def _repeats(values: Array, most: int, small: float) -> npt.NDArray[np.bool_]:
     return np.asarray(apart <= SAME * (float(np.max(np.abs(values), initial=0.0)) + small))
 
 
+def _idle_points(mechanism: Mechanism) -> set[str]:
+    """Points of wheels and carriers alone that have no mass, and that no load, guide or rolling contact names."""
+    named = set(
+        _strings([part_tables(part) for part in (*mechanism.loads, *mechanism.guides, *mechanism.rolling)])
+    )
+    wheels = {name for gear in mechanism.gears for name in (*gear.links, gear.carrier)} - {FRAME} - named
+    idle = {name for name in wheels if not mechanism.links[name].mass and not mechanism.links[name].inertia}
+    kept = {point for name, link in mechanism.links.items() if name not in idle for point in link.coordinates}
+    points = {point for name in idle for point in mechanism.links[name].coordinates}
+    return points - kept - named
+
+
+def _strings(value: object) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for entry in value.values():
+            yield from _strings(entry)
+    elif isinstance(value, list | tuple):
+        for entry in value:
+            yield from _strings(entry)
+
+
 def _places(prepared: Ready, turned: Array) -> Array:
-    """Coordinates of all moving points (n, coordinates)."""
+    """Coordinates of all moving points (n, coordinates) but those of idle wheels.
+
+    A planet hardly ever returns with its carrier: where it neither weighs nor is loaded, it need not.
+    """
     path = prepared.kinematics.path
     ones = np.ones(len(turned))
     solved = solve(prepared, SampleGrid(turned, path.initial + path.forward * turned, ones, 0.0 * ones))
     missing = ~np.isin(solved.status[0], (Status.OK, Status.SINGULAR))
     if missing.any():
         raise _locks(prepared, turned[missing])
-    return np.asarray(solved.points[0, 0].reshape(len(turned), -1))
+    idle = _idle_points(prepared.mechanism)
+    kept = [place for place, point in enumerate(prepared.mechanism.moving_points) if point not in idle]
+    return np.asarray(solved.points[0, 0][:, kept].reshape(len(turned), -1))
 
 
 def _locks(prepared: Ready, turned: Array) -> MotionError:

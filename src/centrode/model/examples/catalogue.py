@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal, TypeAlias, overload
+from typing import Any, Literal, TypeAlias, overload
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import Cam
-from centrode.model.cam_files import AnyCam, parse_cam, read_cam
+from centrode.model.cam_files import CAMS, AnyCam
+from centrode.model.description_files import DescriptionFiles
 from centrode.model.examples import FOLDERS, example_names, example_text
-from centrode.model.files import parse_mechanism, read_mechanism
+from centrode.model.files import MECHANISMS
 from centrode.model.follower_cam import PlateCam
-from centrode.model.gear_pairs import GearPair, parse_gear_pair, read_gear_pair
-from centrode.model.gear_trains import GearTrain, parse_gear_train, read_gear_train
+from centrode.model.gear_pairs import GEAR_PAIRS, GearPair
+from centrode.model.gear_trains import GEAR_TRAINS, GearTrain
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import likely, read_file, value_text
+from centrode.model.reading import DescriptionPart, likely, read_file, value_text
+from centrode.model.toml import Described as OneKind
 from centrode.model.toml import description_kind, toml_tables
+
+_FILES: Mapping[str, DescriptionFiles[Any]] = {
+    files.kind: files for files in (MECHANISMS, CAMS, GEAR_PAIRS, GEAR_TRAINS)
+}
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
@@ -26,6 +33,9 @@ CamSource: TypeAlias = AnyCam | str | Path
 GearPairSource: TypeAlias = GearPair | str | Path
 GearTrainSource: TypeAlias = GearTrain | str | Path
 DescriptionSource: TypeAlias = Mechanism | AnyCam | str | Path
+Described: TypeAlias = Mechanism | AnyCam | GearPair | GearTrain
+"""What a file may describe."""
+DescribedSource: TypeAlias = Described | str | Path
 
 
 GearPairName: TypeAlias = Literal[
@@ -55,13 +65,8 @@ def example(name: str) -> Mechanism | Cam | PlateCam | GearPair | GearTrain:
     >>> ct.example("crank-rocker").title
     'Crank-rocker four-bar linkage'
     """
-    if name in example_names("cam"):
-        return parse_cam(example_text(name), f"{name}.toml")
-    if name in example_names("gear pair"):
-        return parse_gear_pair(example_text(name), f"{name}.toml")
-    if name in example_names("gear train"):
-        return parse_gear_train(example_text(name), f"{name}.toml")
-    return parse_mechanism(example_text(name), f"{name}.toml")
+    kind = next((kind for kind in FOLDERS if name in example_names(kind)), MECHANISMS.kind)
+    return _FILES[kind].example(name)  # type: ignore[no-any-return]
 
 
 def load(file_or_example: str | Path) -> Mechanism:
@@ -69,11 +74,7 @@ def load(file_or_example: str | Path) -> Mechanism:
 
     Raises InputError if there is neither, or the file is no description of a linkage.
     """
-    path = _file(file_or_example)
-    if path is not None:
-        return read_mechanism(path)
-    name = str(file_or_example)
-    return parse_mechanism(example_text(name), f"{name}.toml")
+    return _load(MECHANISMS, file_or_example)
 
 
 def load_cam(file_or_example: str | Path) -> AnyCam:
@@ -81,11 +82,7 @@ def load_cam(file_or_example: str | Path) -> AnyCam:
 
     Raises InputError if there is neither, or the file is no description of a cam.
     """
-    path = _file(file_or_example)
-    if path is not None:
-        return read_cam(path)
-    name = str(file_or_example)
-    return parse_cam(example_text(name), f"{name}.toml")
+    return _load(CAMS, file_or_example)
 
 
 def load_gear_pair(file_or_example: str | Path) -> GearPair:
@@ -93,11 +90,7 @@ def load_gear_pair(file_or_example: str | Path) -> GearPair:
 
     Raises InputError if there is neither, or the file is no description of a pair.
     """
-    path = _file(file_or_example)
-    if path is not None:
-        return read_gear_pair(path)
-    name = str(file_or_example)
-    return parse_gear_pair(example_text(name), f"{name}.toml")
+    return _load(GEAR_PAIRS, file_or_example)
 
 
 def load_gear_train(file_or_example: str | Path) -> GearTrain:
@@ -105,30 +98,37 @@ def load_gear_train(file_or_example: str | Path) -> GearTrain:
 
     Raises InputError if there is neither, or the file is no description of a train.
     """
-    path = _file(file_or_example)
-    if path is not None:
-        return read_gear_train(path)
-    name = str(file_or_example)
-    return parse_gear_train(example_text(name), f"{name}.toml")
+    return _load(GEAR_TRAINS, file_or_example)
 
 
 def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
-    path = _file(file_or_example)
-    name = path.name if path else f"{file_or_example}.toml"
-    text = read_file(path) if path else example_text(str(file_or_example))
-    reads = parse_cam if description_kind(toml_tables(text, name)) == "cam" else parse_mechanism
-    return reads(text, name, path.parent if path else None)
+    return _load_kinds(("linkage", "cam"), file_or_example)  # type: ignore[return-value]
 
 
 def load_drawn(file_or_example: str | Path) -> Mechanism | AnyCam | GearPair:
     """What sheets are drawn of: a mechanism, a cam or a pair of gears in a file, or the built-in one of that name."""
+    return _load_kinds(("linkage", "cam", "gear pair"), file_or_example)  # type: ignore[return-value]
+
+
+def load_description(file_or_example: str | Path) -> Described:
+    """What a TOML file describes, of any kind, or the built-in one of that name; InputError if there is neither."""
+    return _load_kinds(tuple(_FILES), file_or_example)  # type: ignore[return-value]
+
+
+def _load(files: DescriptionFiles[OneKind], file_or_example: str | Path) -> OneKind:
+    path = _file(file_or_example)
+    return files.read(path) if path is not None else files.example(str(file_or_example))
+
+
+def _load_kinds(kinds: tuple[str, ...], file_or_example: str | Path) -> DescriptionPart:
+    """What a file describes, or the built-in one of that name, of one of several kinds, the first if it says none."""
     path = _file(file_or_example)
     name = path.name if path else f"{file_or_example}.toml"
     text = read_file(path) if path else example_text(str(file_or_example))
-    if description_kind(toml_tables(text, name)) == "gear pair":
-        return parse_gear_pair(text, name, path.parent if path else None)
-    return load_either(file_or_example)
+    kind = description_kind(toml_tables(text, name))
+    known = kind if kind is not None and kind in kinds else kinds[0]
+    return _FILES[known].parse(text, name, path.parent if path else None)  # type: ignore[no-any-return]
 
 
 def mechanism_of(source: MechanismSource) -> Mechanism:
@@ -175,6 +175,22 @@ def description_of(source: DescriptionSource) -> Mechanism | AnyCam:
             _("this function takes a mechanism or a cam, its file or the name of a built-in one"), source
         )
     return source
+
+
+def reported_description(source: DescribedSource) -> Described:
+    """The description itself, or what `load_description` finds under a name; InputError for anything else."""
+    described: object = load_description(source) if isinstance(source, str | Path) else source
+    if isinstance(described, Mechanism | Cam | PlateCam | GearPair | GearTrain):
+        return described
+    what = _("this function takes a mechanism, a cam, or a pair or train of gears, its file or its name")
+    raise _refusal(what, described)
+
+
+def files_of(description: Described) -> DescriptionFiles[Any]:
+    """What reads and writes descriptions of the kind of one."""
+    if isinstance(description, Mechanism):
+        return MECHANISMS
+    return _FILES[description.kind]
 
 
 def _refusal(takes: str, given: object) -> InputError:

@@ -41,12 +41,12 @@ from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import respell, spell_decimals
 from centrode.render.spelling import DASH, FigureSpelling
 from centrode.sheets.drawing_sheets import (
-    CamSheet,
     DiagramSheet,
     EnergySheet,
     ForceSheet,
     GeometricDrawing,
     MotionSheet,
+    ProfileSheet,
     VectorSheet,
 )
 from centrode.sheets.force_pages import GroupPage
@@ -113,8 +113,8 @@ def _draw(page: DrawingPage, sheet: DrawingSheet, scale: DrawingScale | None) ->
             return _draw_energies(page, sheet)
         case ForceSheet():
             return _draw_forces(page, sheet)
-        case CamSheet():
-            return _draw_cam(page, sheet, scale)
+        case ProfileSheet():
+            return _draw_profile(page, sheet, scale)
         case _:
             assert_never(sheet)
 
@@ -190,7 +190,7 @@ def _draw_forces(page: DrawingPage, sheet: ForceSheet) -> str:
     return DASH
 
 
-def _draw_cam(page: DrawingPage, sheet: CamSheet, scale: DrawingScale | None) -> str:
+def _draw_profile(page: DrawingPage, sheet: ProfileSheet, scale: DrawingScale | None) -> str:
     """Diagrams below each other at the left, the profile at the upper right, below it the choice of its radius."""
     field = _field()
     column = field.part(right=float(field.size[0]) - DIAGRAMS, top=CORNER)

@@ -21,7 +21,15 @@ from centrode.render.drawing.style import (
     PALETTE,
     Decimals,
 )
-from centrode.render.figures.curves import angle_ticks, legend_height, legend_width, write_legend, write_title
+from centrode.render.figures.curves import (
+    PANEL_INCHES,
+    angle_ticks,
+    column_width,
+    legend_height,
+    legend_width,
+    write_legend,
+    write_title,
+)
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath
 
@@ -32,6 +40,8 @@ if TYPE_CHECKING:
 
 LEAST, TALLEST, EDGES, HEAD = 1.8, 4.6, 0.75, 1.1
 """The least side of the axes, the most of their height, and what stands beside and above them [inch]."""
+MANY, ENTRY = 8, 0.19
+"""Names of which more stand below each other beside the axes, and the height of one [inch]."""
 COLOURS = {AreaKind.MAIN: "#CFE3F2", AreaKind.BESIDE: "#E4E4E4"}
 
 
@@ -44,9 +54,14 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     names = [area.name for area in diagram.areas] + [path.name for path in diagram.paths]
     names += [name for name, _x, _y in diagram.places]
     texts = [words.text(name) for name in names]
-    beside, above = legend_width(texts), legend_height(texts)
+    # many names above the axes would leave no room for these
+    many = len(texts) > MANY
+    inches = TALLEST if many else PANEL_INCHES
+    beside = column_width(texts) if many else legend_width(texts)
+    above = 0.0 if many else legend_height(texts)
     wide, high = _inches(diagram, PAGE_WIDTH - EDGES - beside, min(TALLEST, PAGE_HEIGHT - HEAD - above))
-    figure = Figure(figsize=(PAGE_WIDTH, high + HEAD + above), layout="constrained")
+    least = ENTRY * len(texts) if many else 0.0
+    figure = Figure(figsize=(PAGE_WIDTH, max(high, least) + HEAD + above), layout="constrained")
     axes = figure.subplots()
     axes.set_box_aspect(high / wide)
     shown = [area for area in diagram.areas if (area.levels > 0.0).any()]
@@ -68,7 +83,7 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
         axis.set_major_formatter(Decimals())
         angle_ticks(axis, float(values[0]), float(values[-1]), unit, 9)
         axis.set_label_text(label)
-    write_legend(axes, key)
+    write_legend(axes, key, inches=inches, beside=True if many else None)
     write_title(figure, spelling.text(diagram.title), words.text(diagram.mechanism))
     return figure
 

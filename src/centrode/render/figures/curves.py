@@ -189,6 +189,7 @@ class Panel:
         Put the names beside the panel, or above it.
     slopes : mapping of name -> (sample)
         Derivatives of curves by the abscissa, in shown units, where they are known.
+    areas : names of areas, for which the legend needs room too
     """
 
     label: str
@@ -198,6 +199,7 @@ class Panel:
     scale: float = 0.0
     legend: bool = True
     slopes: Mapping[str, Array] = field(default_factory=dict)
+    areas: Sequence[str] = ()
 
 
 def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: DrawnAbscissa) -> Figure:
@@ -206,7 +208,7 @@ def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: 
     width = PAGE_WIDTH / columns
     # all legends of a figure stand on the same side
     beside = all(
-        stands_beside(with_events(list(panel.curves)), PANEL_INCHES, width)
+        stands_beside(with_events([*panel.curves, *panel.areas]), PANEL_INCHES, width)
         for panels in rows
         for panel in panels
         if panel.legend
@@ -214,7 +216,7 @@ def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: 
     above = [
         0.0
         if beside
-        else max(_height(list(panel.curves), width) if panel.legend else 0.0 for panel in panels)
+        else max(_height([*panel.curves, *panel.areas], width) if panel.legend else 0.0 for panel in panels)
         for panels in rows
     ]
     each = LONE_INCHES if len(rows) == 1 else PANEL_INCHES
@@ -487,4 +489,9 @@ def legend_width(names: Sequence[str], inches: float = PANEL_INCHES, width: floa
     texts = with_events(names)
     if not stands_beside(texts, inches, width):
         return 0.0
-    return legend_columns(len(texts), inches) * (KEY_INCHES + NAME * LETTER * max(map(len, texts)))
+    return legend_columns(len(texts), inches) * column_width(texts)
+
+
+def column_width(names: Sequence[str]) -> float:
+    """Width [inch] of a legend whose names stand below each other."""
+    return KEY_INCHES + NAME * LETTER * max(map(len, names))

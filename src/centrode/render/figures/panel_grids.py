@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from textwrap import fill
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 import numpy as np
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = NDArray[np.float64]
 COLUMNS = 3
+LETTERS = 78
+"""So many letters of titles stand beside each other."""
 PANEL = 1.3
 """Sides of a panel [inch], of three beside each other."""
 ROOM = 1.5
@@ -53,7 +56,8 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
                 _rings(axes, panel, display)
             case _:
                 assert_never(panel)
-        axes.set_title(spelling.text(panel.name))
+        lines = spelling.text(panel.name).splitlines()
+        axes.set_title("\n".join(fill(line, LETTERS // columns) for line in lines))
     for axes in places[count:]:
         axes.set_axis_off()
     for row in range(rows):  # one label serves a row and a column of panels

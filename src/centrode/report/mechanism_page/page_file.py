@@ -253,7 +253,7 @@ def _controls(program: PageProgram) -> str:
         return f'<label><input type="checkbox" data-show="{name}"{checked}> {_escape(text)}</label>'
 
     of_link = _escape(_("of link"))
-    links = "".join(_option(name, name == _floating(program)) for name in program.data["links"])
+    links = "".join(_option(name, name == _floating_link(program)) for name in program.data["links"])
     body = f'<label class="of"> {of_link} <select data-do="body">{links}</select></label>'
     centrodes = box("rolling-centrodes", _("both centrodes"))
     reactions = box("reactions", _("reactions")) if program.data["sides"] else ""
@@ -275,7 +275,7 @@ def _option(name: str, chosen: bool) -> str:
     return f"<option{' selected' if chosen else ''}>{html.escape(name)}</option>"
 
 
-def _floating(program: PageProgram) -> str:
+def _floating_link(program: PageProgram) -> str:
     """The first link that is not hinged to the frame: its centrodes are curves."""
     links, fixed = program.mechanism.links, set(program.mechanism.frame.points)
     free = [

@@ -22,7 +22,7 @@ from centrode.report.study import ReportOptions, ReportStudy, settle_options
 from centrode.report.variants.answers import answer_sheet, answers_of
 from centrode.report.variants.folders import Progress, row_of_text, write_variants
 from centrode.sweeps.clusters import ClusterSource
-from centrode.topics.registry import INTEGRATE
+from centrode.topics.equations import INTEGRATE
 
 if TYPE_CHECKING:
     from centrode.assignments.results import VariantResults, VariantRow, Variants

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from centrode.synthesis.curve_atlas import DENSE, PLACES, Atlas, at_equal_distances, atlas, descriptors
-from centrode.synthesis.four_bars import Array, Complex, coupler_motion, mirrored, transformed
+from centrode.synthesis.four_bars import Array, Complex, coupler_motion, mirror_image, transform
 from centrode.synthesis.least_squares import PHASE, VARIABLES, Lanes
 
 CANDIDATES = 500
@@ -34,7 +34,7 @@ def closed_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
             distance = ((book.descriptors - descriptors(shape)) ** 2).sum(axis=1)
             for index in np.argpartition(distance, count)[:count]:
                 offers.append((int(index), mirror, backwards))
-    made = [_placed(book, even[0], shares, *offer) for offer in offers]
+    made = [_place_linkage(book, even[0], shares, *offer) for offer in offers]
     best = np.argsort([miss for miss, *_rest in made], kind="stable")[:count]
     return Lanes(
         np.concatenate([made[k][1] for k in best]),
@@ -49,7 +49,7 @@ def _variant(points: Complex, mirror: bool, backwards: bool) -> Complex:
     return np.roll(shape[::-1], 1) if backwards else shape
 
 
-def _placed(
+def _place_linkage(
     book: Atlas, even: Complex, shares: Array, index: int, mirror: bool, backwards: bool
 ) -> tuple[float, Array, float, Array, float]:
     """The miss of one linkage in its best place, its variables, side, crank angles at the targets, and their sense."""
@@ -65,12 +65,12 @@ def _placed(
     crank = np.append(book.crank[index], book.crank[index, :1] + 2 * np.pi)
     places = -shares if backwards else shares
     angles = np.interp((places - shift) % PLACES, np.arange(PLACES + 1), crank)
-    linkage = transformed(
+    linkage = transform(
         book.linkages[index : index + 1], np.array([factor]), np.array([about - factor * curve.mean()])
     )
     angles, side, sense = angles + float(np.angle(factor)), 1.0, -1.0 if backwards else 1.0
     if mirror:
-        linkage, side, angles, sense = mirrored(linkage), -1.0, -angles, -sense
+        linkage, side, angles, sense = mirror_image(linkage), -1.0, -angles, -sense
     return miss, _as_variables(linkage), side, in_sense(angles, sense), sense
 
 
@@ -122,7 +122,7 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
                     found.append((float(flat[index]), index, int(starts[start]), width, mirror, backwards))
     found.sort()
     made = [
-        _arc_placed(book, int(chosen[index]), points, shares, start, width, mirror, backwards)
+        _place_arc(book, int(chosen[index]), points, shares, start, width, mirror, backwards)
         for _miss, index, start, width, mirror, backwards in found[:count]
     ]
     return Lanes(
@@ -133,7 +133,7 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
     )
 
 
-def _arc_placed(
+def _place_arc(
     book: Atlas,
     index: int,
     points: Complex,
@@ -155,7 +155,7 @@ def _arc_placed(
     linkage, turn = _best_place(linkage, drawn, shape)
     crank, side, sense = crank + turn, 1.0, -1.0 if backwards else 1.0
     if mirror:
-        linkage, side, crank, sense = mirrored(linkage), -1.0, -crank, -sense
+        linkage, side, crank, sense = mirror_image(linkage), -1.0, -crank, -sense
     return _as_variables(linkage), side, crank, sense
 
 
@@ -165,7 +165,7 @@ def _best_place(linkage: Array, drawn: Complex, shape: Complex) -> tuple[Array, 
     power = max(float((np.abs(centred) ** 2).sum()), 1e-300)
     factor = ((shape - shape.mean()) * np.conj(centred)).sum() / power
     shift = shape.mean() - factor * drawn.mean()
-    return transformed(linkage, np.array([factor]), np.array([shift])), float(np.angle(factor))
+    return transform(linkage, np.array([factor]), np.array([shift])), float(np.angle(factor))
 
 
 def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: int = CANDIDATES) -> Lanes:
@@ -198,7 +198,7 @@ def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: in
         linkage, turn = _best_place(linkage, drawn, np.conj(points) if mirror else points)
         offset, side = turn + phase, 1.0
         if mirror:
-            linkage, side, offset = mirrored(linkage), -1.0, -offset
+            linkage, side, offset = mirror_image(linkage), -1.0, -offset
         row = _as_variables(linkage)
         row[:, PHASE] = offset if phase_free else 0.0
         variables.append(row)

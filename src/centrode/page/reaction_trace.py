@@ -18,7 +18,7 @@ from centrode.kinematics.machine_code.variables import box_array
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.numerics.expressions import Node, as_node, variable
-from centrode.page.tracing import BALANCING, TracedQuantity
+from centrode.page.plan_trace import BALANCING, TracedQuantity
 
 
 @dataclass(frozen=True)

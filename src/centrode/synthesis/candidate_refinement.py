@@ -39,7 +39,7 @@ def fit_lanes(
         kept = _distinct(lanes.take(np.flatnonzero(good)), FINALISTS)
         rest = _distinct(lanes.take(np.flatnonzero(~good)), FINALISTS)
         rest = ordered_fit(sharp, rest, closed, 40, stop)
-        lanes = kept.joined(rest)
+        lanes = kept.join(rest)
     progress(0.6)
     lanes = least_squares(sharp, _distinct(lanes, FINALISTS), 300, 1e-13, stop)
     progress(0.8)

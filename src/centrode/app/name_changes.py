@@ -91,7 +91,7 @@ def _replace_point(patch: Patch, old: str, name: str) -> None:
 
 def join_points(patch: Patch, operation: Operation) -> None:
     """Make one point of two."""
-    sketch = patch.plane_sketch()
+    sketch = patch.sketch
     points = operation.get("points") or [operation.get("point"), operation.get("to")]
     if not isinstance(points, list) or len(points) != 2 or points[0] == points[1]:
         raise InputError("", _('two different points are needed: ["A", "B"]'))
@@ -100,9 +100,9 @@ def join_points(patch: Patch, operation: Operation) -> None:
     if both:
         what = _("points {first} and {second} both belong to {link}")
         raise InputError("", what.format(first=old, second=kept, link=both[0]))
-    if old in sketch.fixed or kept not in sketch.places:
+    if old in sketch.frame_points or kept not in sketch.places:
         old, kept = kept, old
-    if old in sketch.fixed:
+    if old in sketch.frame_points:
         raise InputError("", _("both points belong to the frame"), _("switch Ground off at one of them"))
     if (
         kept in sketch.places

@@ -1,0 +1,531 @@
+"""Chapters of a document on a pair of gear wheels: data, geometry with its formulas, contact, contour, true teeth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
+from centrode.geometry.involute import involute
+from centrode.sheets.sheet import (
+    Block,
+    Chapter,
+    Check,
+    Fact,
+    FactTable,
+    Formula,
+    Illustration,
+    Paragraph,
+    Section,
+    Table,
+)
+from centrode.sheets.texts import NOTHING, Expression, Factor, Joined, Leaf, Number, Sentence, Text
+
+if TYPE_CHECKING:
+    from centrode.gears.pair_geometry import GearWheel, PairGeometry
+    from centrode.gears.results import GearPairResults
+
+Line = tuple[Leaf, ...]
+INV = 'op("inv")'
+ROUNDING = 1e-9
+"""Share by which two routes to one number may differ: roundings of differences of nearly equal numbers."""
+
+
+def data_chapter(results: GearPairResults, purpose: Text | None) -> Chapter:
+    """What is given of the pair."""
+    pair, described = results.geometry, results.gear_pair
+    kinds = {
+        "external": Sentence("external"),
+        "internal": Sentence("internal"),
+        "rack": Sentence("wheel and rack"),
+    }
+    facts = [Fact(Sentence("gearing"), kinds[pair.kind]), Fact(Sentence("module"), _size(pair.module))]
+    for number, wheel in enumerate(pair.wheels):
+        if not wheel.is_rack:
+            label = Sentence("number of teeth of the pinion"), Sentence("number of teeth of the wheel")
+            facts.append(Fact(label[number], Number(wheel.teeth)))
+    facts.append(Fact(Sentence("helix angle"), _angle(pair.helix_angle)))
+    facts.append(Fact(Sentence("pressure angle of the reference rack"), _angle(pair.rack.pressure_angle)))
+    facts.append(Fact(Sentence("addendum coefficient"), Number(pair.rack.addendum)))
+    facts.append(Fact(Sentence("clearance coefficient"), Number(pair.rack.clearance)))
+    shifts: Text = Joined(tuple(Number(shift) for shift in pair.shifts), "; ")
+    if purpose is not None:
+        shifts = Sentence("{shifts}, {purpose}", shifts=shifts, purpose=purpose)
+    facts.append(Fact(Sentence("shift coefficients"), shifts))
+    if described.centre_distance is not None:
+        facts.append(Fact(Sentence("centre distance"), _size(described.centre_distance)))
+    if described.width is not None:
+        facts.append(Fact(Sentence("width of the rims"), _size(described.width)))
+    if described.speed is not None:
+        facts.append(Fact(Sentence("speed of the pinion"), Number(described.speed, "rad/s", unit_fixed=True)))
+    if described.moment is not None:
+        facts.append(Fact(Sentence("moment on the pinion"), Number(described.moment, "N m")))
+    return Chapter(Sentence("Data"), (Section(NOTHING, (FactTable(tuple(facts), Sentence("Gear pair")),)),))
+
+
+def _size(value: float, digits: str = ".7g") -> Number:
+    return Number(value, "m", digits)
+
+
+def _angle(value: float, digits: str = ".7g") -> Number:
+    return Number(math.degrees(value), "°", digits, unit_fixed=True)
+
+
+def _hidden(value: float) -> Number:
+    return Number(value, "m", unit_hidden=True)
+
+
+def _line(left: str, letters: str, notation: str, end: Leaf, **values: Leaf) -> Line:
+    """Left side, the formula in letters, the same with numbers, and what comes out."""
+    return left, Expression(letters), Expression(notation, **values), end
+
+
+# Geometry
+
+
+def geometry_chapter(results: GearPairResults, wheels_table: Table) -> Chapter:
+    """Angles, distances and diameters, each by its formula with the numbers; all dimensions in a table."""
+    pair = results.geometry
+    sections = [
+        Section(Sentence("Angle and centre distance"), tuple(_mesh(pair))),
+        *(
+            Section(title, tuple(_wheel(wheel)))
+            for wheel, title in zip(
+                pair.wheels,
+                (Sentence("Dimensions of the pinion"), Sentence("Dimensions of the wheel")),
+                strict=True,
+            )
+            if not wheel.is_rack
+        ),
+        Section(Sentence("All dimensions"), (wheels_table,)),
+        Section(Sentence("Undercut and pointed teeth"), tuple(_bounds(pair))),
+    ]
+    return Chapter(Sentence("Geometry of the pair"), tuple(sections))
+
+
+def _mesh(pair: PairGeometry) -> Iterator[Block]:
+    section = pair.transverse
+    if pair.helix_angle:
+        yield Paragraph(
+            Sentence("Teeth are computed in the transverse section, with the module and the angle")
+        )
+        cosine = Number(math.cos(pair.helix_angle))
+        yield Formula(
+            (
+                _line(
+                    "m_t",
+                    "frac(m, cos beta)",
+                    "frac({m}, {c})",
+                    _size(section.module),
+                    m=_hidden(pair.module),
+                    c=cosine,
+                ),
+                (
+                    "alpha_t",
+                    Expression("arctan frac(tan alpha, cos beta)"),
+                    _angle(section.pressure_angle),
+                ),
+            )
+        )
+    if pair.kind == "rack":
+        yield Paragraph(
+            Sentence(
+                "With a rack the working pressure angle is that of the rack, $alpha_w = alpha_t$; shifts only move it."
+            )
+        )
+        return
+    internal = pair.kind == "internal"
+    sums = ("x_2 - x_1", "z_2 - z_1") if internal else ("x_1 + x_2", "z_1 + z_2")
+    own = involute(section.pressure_angle)
+    yield Paragraph(Sentence("The working pressure angle $alpha_w$ follows from mesh without play:"))
+    yield Formula(
+        (
+            _line(
+                'op("inv") alpha_w',
+                f'op("inv") alpha_t + frac(2 ({sums[0]}) tan alpha, {sums[1]})',
+                "{own} + frac(2 dot ({x}) dot {slope}, {z})",
+                Number(pair.working_involute),
+                own=Number(own),
+                x=Number(pair.shift_sum),
+                slope=Number(math.tan(pair.rack.pressure_angle)),
+                z=Number(pair.teeth_sum),
+            ),
+            ("alpha_w", _angle(pair.working_angle)),
+        ),
+        "working-angle",
+    )
+    yield Paragraph(Sentence("The pitch circles would touch at the distance $a$, the wheels mesh at $a_w$:"))
+    lines = [
+        _line(
+            "a",
+            f"frac(m_t ({sums[1]}), 2)",
+            "frac({m} dot {z}, 2)",
+            _size(pair.pitch_distance),
+            m=_hidden(section.module),
+            z=Number(pair.teeth_sum),
+        ),
+        _line(
+            "a_w",
+            "a frac(cos alpha_t, cos alpha_w)",
+            "{a} dot frac({ct}, {cw})",
+            _size(pair.centre_distance),
+            a=_hidden(pair.pitch_distance),
+            ct=Number(math.cos(section.pressure_angle)),
+            cw=Number(math.cos(pair.working_angle)),
+        ),
+        _line(
+            "y",
+            "frac(a_w - a, m)",
+            "frac({aw} - {a}, {m})",
+            Number(pair.distance_coefficient),
+            aw=_hidden(pair.centre_distance),
+            a=_hidden(pair.pitch_distance),
+            m=_hidden(pair.module),
+        ),
+        _line(
+            "Delta y",
+            f"{sums[0]} - y",
+            "{x} - {y}",
+            Number(pair.equalising_coefficient),
+            x=Number(pair.shift_sum),
+            y=Factor(Number(pair.distance_coefficient)),
+        ),
+    ]
+    yield Formula(tuple(lines))
+    apart = sum(_signed_radius(pair, wheel) for wheel in pair.wheels)
+    yield Check(
+        Sentence("The radii of the working pitch circles make up the centre distance within {share}."),
+        abs(apart - pair.centre_distance),
+        pair.centre_distance,
+        ROUNDING,
+    )
+
+
+def _signed_radius(pair: PairGeometry, wheel: GearWheel) -> float:
+    return wheel.working_pitch / 2 * (pair.sign if wheel.number == 0 else 1)
+
+
+def _wheel(wheel: GearWheel) -> Iterator[Block]:
+    """Diameters and thicknesses of a wheel."""
+    pair, index = wheel.pair, str(wheel.number + 1)
+    section, module = pair.transverse, pair.module
+    height, depth = pair.rack.addendum, pair.rack.addendum + pair.rack.clearance
+    values: dict[str, Leaf] = {
+        "m": _hidden(module),
+        "mt": _hidden(section.module),
+        "z": Number(wheel.teeth),
+        "d": _hidden(wheel.pitch),
+        "x": Factor(Number(wheel.shift)),
+        "h": Number(height),
+        "low": Factor(Number(pair.equalising_coefficient)),
+    }
+    lines = [
+        _line(f"d_{index}", f"m_t z_{index}", "{mt} dot {z}", _size(wheel.pitch), **_of(values, "mt", "z")),
+        _line(
+            f"d_(b {index})",
+            f"d_{index} cos alpha_t",
+            "{d} dot {c}",
+            _size(wheel.base),
+            d=values["d"],
+            c=Number(math.cos(section.pressure_angle)),
+        ),
+        _line(
+            f"d_(w {index})",
+            f"frac(d_(b {index}), cos alpha_w)",
+            "frac({b}, {c})",
+            _size(wheel.working_pitch),
+            b=_hidden(wheel.base),
+            c=Number(math.cos(pair.working_angle)),
+        ),
+    ]
+    if wheel.internal:
+        relief = 0.25 - 0.125 * wheel.shift if wheel.shift < 2 else 0.0
+        lines += [
+            _line(
+                f"d_(a {index})",
+                f"d_{index} - 2 (h_a^* - x_{index} + Delta y - k_{index}) m",
+                "{d} - 2 dot ({h} - {x} + {low} - {k}) dot {m}",
+                _size(wheel.tip),
+                k=Factor(Number(relief)),
+                **_of(values, "d", "h", "x", "low", "m"),
+            ),
+            _line(
+                f"d_(f {index})",
+                "2 a_w + d_(a 1) + 2 c^* m",
+                "2 dot {a} + {o} + 2 dot {c} dot {m}",
+                _size(wheel.root),
+                a=_hidden(pair.centre_distance),
+                o=_hidden(pair.wheels[0].tip),
+                c=Number(pair.rack.clearance),
+                m=values["m"],
+            ),
+        ]
+    else:
+        lowered = "" if pair.kind == "internal" else " - Delta y"
+        with_lowered = "" if pair.kind == "internal" else " - {low}"
+        keys = ("d", "h", "x", "m") if pair.kind == "internal" else ("d", "h", "x", "m", "low")
+        lines += [
+            _line(
+                f"d_(a {index})",
+                f"d_{index} + 2 (h_a^* + x_{index}{lowered}) m",
+                f"{{d}} + 2 dot ({{h}} + {{x}}{with_lowered}) dot {{m}}",
+                _size(wheel.tip),
+                **_of(values, *keys),
+            ),
+            _line(
+                f"d_(f {index})",
+                f"d_{index} - 2 (h_a^* + c^* - x_{index}) m",
+                "{d} - 2 dot ({t} - {x}) dot {m}",
+                _size(wheel.root),
+                t=Number(depth),
+                **_of(values, "d", "x", "m"),
+            ),
+        ]
+    sign = "+" if wheel.outwards > 0 else "-"
+    lines.append(
+        _line(
+            f"s_{index}",
+            f"(pi / 2 {sign} 2 x_{index} tan alpha) m_t",
+            f"(pi / 2 {sign} 2 dot {{x}} dot {{slope}}) dot {{mt}}",
+            _size(wheel.pitch_thickness),
+            slope=Number(math.tan(pair.rack.pressure_angle)),
+            **_of(values, "x", "mt"),
+        )
+    )
+    if not wheel.tip_inside_base:
+        at_tip = math.acos(wheel.base / wheel.tip)
+        other = "-" if wheel.outwards > 0 else "+"
+        lines += [
+            (f"alpha_(a {index})", Expression(f"arccos frac(d_(b {index}), d_(a {index}))"), _angle(at_tip)),
+            _line(
+                f"s_(a {index})",
+                f"d_(a {index}) (frac(s_{index}, d_{index}) {sign} {INV} alpha_t {other} {INV} alpha_(a {index}))",
+                f"{{da}} dot (frac({{s}}, {{d}}) {sign} {{it}} {other} {{ia}})",
+                _size(wheel.tip_thickness),
+                da=_hidden(wheel.tip),
+                s=_hidden(wheel.pitch_thickness),
+                d=values["d"],
+                it=Number(involute(section.pressure_angle)),
+                ia=Number(involute(at_tip)),
+            ),
+        ]
+    yield Formula(tuple(lines))
+
+
+def _of(values: dict[str, Leaf], *names: str) -> dict[str, Leaf]:
+    return {name: values[name] for name in names}
+
+
+def _bounds(pair: PairGeometry) -> Iterator[Block]:
+    """Least shifts without undercut; tips."""
+    yield Paragraph(Sentence("The rack does not undercut a wheel whose shift coefficient is at least"))
+    lines: list[Line] = []
+    for wheel in pair.wheels:
+        if wheel.is_generated:
+            index = wheel.number + 1
+            sine = math.sin(pair.transverse.pressure_angle)
+            lines.append(
+                _line(
+                    f'x_({index} "min")',
+                    f"h_a^* - frac(z_{index} sin^2 alpha_t, 2 cos beta)",
+                    "{h} - frac({z} dot {s}, 2 dot {c})",
+                    Number(wheel.least_shift),
+                    h=Number(pair.rack.straight),
+                    z=Number(wheel.teeth),
+                    s=Number(sine * sine),
+                    c=Number(math.cos(pair.helix_angle)),
+                )
+            )
+    yield Formula(tuple(lines))
+    for wheel, name in zip(pair.wheels, (Sentence("pinion"), Sentence("wheel")), strict=True):
+        if wheel.is_generated:
+            cut, free = (
+                Sentence("{wheel}: undercut", wheel=name),
+                Sentence("{wheel}: no undercut", wheel=name),
+            )
+            yield Paragraph(cut if wheel.undercut else free, clause=True)
+        if not wheel.is_rack and math.isfinite(wheel.tip_thickness):
+            text = Sentence(
+                "{wheel}: the tips are {share} modules thick; at least {least} is usual",
+                wheel=name,
+                share=Number(wheel.tip_thickness / pair.module, digits=".3g"),
+                least=Number(LEAST_TIP_THICKNESS),
+            )
+            yield Paragraph(text, clause=True)
+
+
+# Contact
+
+
+def contact_chapter(results: GearPairResults) -> Chapter:
+    """Contact ratio, sliding, pressure and forces."""
+    pair = results.geometry
+    figures = tuple(Illustration(name) for name in _contact_pictures(pair))
+    sections = [
+        Section(Sentence("Contact ratio"), tuple(_contact_ratio(results))),
+        Section(Sentence("Specific sliding and pressure"), (*_sliding(pair), *figures)),
+    ]
+    if results.forces is not None:
+        sections.append(Section(Sentence("Forces between the teeth"), tuple(_forces(results))))
+    return Chapter(Sentence("Contact and sliding"), tuple(sections))
+
+
+def _contact_pictures(pair: PairGeometry) -> tuple[str, ...]:
+    return ("sliding",) if pair.kind == "rack" else ("sliding", "contact-ratio")
+
+
+def _contact_ratio(results: GearPairResults) -> Iterator[Block]:
+    pair = results.geometry
+    yield Paragraph(
+        Sentence("The tips end the contact on the line of action. Its active length over the base pitch is")
+    )
+    begin, end = pair.action_ends
+    lines: list[Line] = [
+        _line(
+            "p_b",
+            "pi m_t cos alpha_t",
+            "pi dot {m} dot {c}",
+            _size(pair.base_pitch),
+            m=_hidden(pair.transverse.module),
+            c=Number(math.cos(pair.transverse.pressure_angle)),
+        )
+    ]
+    letters = {
+        "external": "sqrt(r_(a 1)^2 - r_(b 1)^2) + sqrt(r_(a 2)^2 - r_(b 2)^2) - a_w sin alpha_w",
+        "internal": "sqrt(r_(a 1)^2 - r_(b 1)^2) - sqrt(r_(a 2)^2 - r_(b 2)^2) + a_w sin alpha_w",
+        "rack": "sqrt(r_(a 1)^2 - r_(b 1)^2) - r_1 sin alpha_t + frac((h_a^* - x_1) m, sin alpha_t)",
+    }
+    lines.append(("g_alpha", Expression(letters[pair.kind]), _size(end - begin)))
+    lines.append(
+        _line(
+            "epsilon_alpha",
+            "frac(g_alpha, p_b)",
+            "frac({g}, {p})",
+            Number(pair.contact_ratio),
+            g=_hidden(end - begin),
+            p=_hidden(pair.base_pitch),
+        )
+    )
+    if pair.overlap_ratio:
+        lines.append(
+            _line(
+                "epsilon_beta",
+                "frac(b sin beta, pi m)",
+                "frac({b} dot {s}, pi dot {m})",
+                Number(pair.overlap_ratio),
+                b=_hidden(pair.width),
+                s=Number(math.sin(pair.helix_angle)),
+                m=_hidden(pair.module),
+            )
+        )
+    yield Formula(tuple(lines), "contact-ratio")
+    if pair.contact_ratio < 1:
+        yield Paragraph(Sentence("It is below one: contact ends before the next teeth meet."))
+    elif pair.contact_ratio < LEAST_CONTACT_RATIO:
+        yield Paragraph(
+            Sentence("The contact ratio is below the usual {least}.", least=Number(LEAST_CONTACT_RATIO))
+        )
+    if not any(wheel.undercut for wheel in pair.wheels):
+        yield Check(
+            Sentence("The contact of the true profiles gives the same contact ratio within {share}."),
+            abs(results.true_contact_ratio - pair.contact_ratio),
+            pair.contact_ratio,
+            ROUNDING,
+        )
+
+
+def _sliding(pair: PairGeometry) -> Iterator[Block]:
+    yield Paragraph(
+        Sentence(
+            "Specific sliding compares how fast the contact moves along both flanks; it is greatest where contact ends "
+            "towards the roots. $rho$ are the radii of curvature there."
+        )
+    )
+    lines: list[Line] = []
+    for wheel in pair.wheels:
+        if wheel.is_rack or wheel.sliding_is_unbounded:
+            continue
+        radius = wheel.active_end
+        other = float(pair.other_curvature_radius(radius))
+        own_index, other_index = ("1", "2") if wheel.number == 0 else ("2", "1")
+        left, end = f"theta_{own_index}", Number(wheel.sliding)
+        if pair.kind == "rack":
+            lines.append((left, Expression("1 - frac(r_1 sin alpha_t, rho_1)"), end))
+            continue
+        own, over = (radius, other) if wheel.number == 0 else (other, radius)
+        lines.append(
+            _line(
+                left,
+                f"1 - frac(z_{own_index} rho_{other_index}, z_{other_index} rho_{own_index})",
+                "1 - frac({z} dot {over}, {o} dot {own})",
+                end,
+                z=Number(wheel.teeth),
+                o=Number(pair.wheels[1 - wheel.number].teeth),
+                own=_hidden(own),
+                over=_hidden(over),
+            )
+        )
+    if lines:
+        yield Formula(tuple(lines), "sliding")
+    yield Paragraph(
+        Sentence(
+            "The pressure coefficient $theta_p = m / rho$ compares the module with the relative radius of curvature."
+        )
+    )
+
+
+def _forces(results: GearPairResults) -> Iterator[Block]:
+    forces, pair, moment = results.forces, results.geometry, results.gear_pair.moment
+    assert forces is not None
+    assert moment is not None
+    lines = [
+        _line(
+            "F_t",
+            "frac(2 T, d_(w 1))",
+            "frac(2 dot {T}, {d})",
+            Number(forces.tangential, "N"),
+            T=Number(moment, "N m", unit_fixed=True, unit_hidden=True),
+            d=Number(pair.wheels[0].working_pitch, "m", unit_fixed=True, unit_hidden=True),
+        ),
+        _line(
+            "F_r",
+            "F_t tan alpha_w",
+            "{F} dot {s}",
+            Number(forces.radial, "N"),
+            F=Number(forces.tangential, "N", unit_hidden=True),
+            s=Number(math.tan(pair.working_angle)),
+        ),
+    ]
+    if forces.axial:
+        lines.append(("F_x", Expression("F_t tan beta_w"), Number(forces.axial, "N")))
+    yield Formula(tuple(lines))
+
+
+def contour_chapter(results: GearPairResults) -> Chapter:
+    """The blocking contour with the chosen point."""
+    pair = results.geometry
+    text = Paragraph(
+        Sentence(
+            "Every pair of shift coefficients $x_1$, $x_2$ inside the blocking contour gives a pair of these wheels "
+            "that works: without undercut, pointed teeth and interference at the fillets, with a contact ratio of at "
+            "least one. The pair has $x_1$ = {first} and $x_2$ = {second}.",
+            first=Number(pair.shifts[0]),
+            second=Number(pair.shifts[1]),
+        )
+    )
+    return Chapter(
+        Sentence("Blocking contour"), (Section(NOTHING, (text, Illustration("blocking-contour"))),)
+    )
+
+
+def teeth_chapter(results: GearPairResults) -> Chapter:
+    """Teeth in mesh, and how the rack generates them."""
+    text = Paragraph(
+        Sentence(
+            "The flanks are involutes; the edge of the generating rack envelopes the fillets. The contact moves along "
+            "the active line of action, a common tangent of the base circles."
+        )
+    )
+    figures = (text, Illustration("mesh"), Illustration("generation"))
+    return Chapter(Sentence("Teeth in mesh and their generation"), (Section(NOTHING, figures),))

@@ -1,0 +1,278 @@
+"""Look at every panel of the workbench: in each language, at three widths, by day and at night.
+
+python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square]
+
+For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day
+or at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut,
+letters that are too small, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and
+what of a Russian or Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two
+narrower widths. It needs a Chromium and playwright, as the tests of pages do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import io
+import re
+import shutil
+import sys
+import zlib
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from PIL import Image, ImageDraw
+from playwright.sync_api import sync_playwright
+
+from centrode.model.examples import example_text
+from tools.app_pictures import PATIENCE, SETTLED, workbench
+from tools.report_picture import BROWSERS
+
+AXE = Path(__file__).parents[1] / "tests" / "report" / "axe" / "axe.min.js"
+LANGUAGES = ("en", "ru", "uk")
+SCHEMES = ("light", "dark")
+WIDTHS = (400, 1000, 1920)
+AUDITED = WIDTHS[:2]
+HEIGHT = 900
+TALLEST = 2400
+"""Pixels of a panel that a sheet shows."""
+GAP, HEAD = 16, 22
+TOLERANCES = """
+[tolerances]
+default = "±0.1 mm"
+[tolerances.clearances]
+B = "0.05 mm"
+[tolerances.outputs]
+swing = { formula = "range(angle_DB)", deviation = "0.1 deg" }
+rocker = "angle.DB"
+"""
+DESCRIPTIONS = (
+    "six-bar-press",
+    "six-bar-press-run-up",
+    "five-bar-two-drives",
+    "indexing-cam",
+    "walking-wheel-four-legs",
+    "crank-rocker",
+    "planetary-gear-train",
+    "spherical-four-bar",
+)
+"""Each panel is shown of the first of these that has it."""
+AGAIN = {"spherical-four-bar": ("motion", "centres", "equations"), "planetary-gear-train": ("run",)}
+"""Panels that look otherwise of some descriptions."""
+FITS = """() => {
+  const panel = document.querySelector("#panel"), page = document.documentElement, said = [];
+  const card = document.querySelector(".card.panel").getBoundingClientRect();
+  if (page.scrollWidth > page.clientWidth) said.push(`the page is ${page.scrollWidth - page.clientWidth} too wide`);
+  const say = (what, one) => {
+    const text = (one.value ?? one.textContent ?? "").trim().slice(0, 50);
+    said.push(`${what}: ${one.tagName.toLowerCase()}.${one.getAttribute("class") ?? ""} "${text}"`);
+  };
+  const scrolls = (one, axis) => /auto|scroll/.test(getComputedStyle(one)[`overflow${axis}`]);
+  const clips = (one) => getComputedStyle(one).overflowX !== "visible";
+  for (const one of panel.querySelectorAll("*")) {
+    if (one.closest("svg, math") || !one.getClientRects().length) continue;
+    let around = one.parentElement;
+    while (around !== panel && !clips(around)) around = around.parentElement;
+    const right = one.getBoundingClientRect().right;
+    if (around === panel && right > card.right + 1) say("wider than the panel", one);
+    const wide = one.scrollWidth > one.clientWidth + 1, field = /INPUT|SELECT/.test(one.tagName);
+    if (wide && (field ? one.type !== "range" : clips(one) && !scrolls(one, "X"))) say("cut", one);
+    const high = one.scrollHeight > one.clientHeight + 1;
+    if (high && scrolls(one, "Y") && !one.matches(".long")) say("scrolled in the panel", one);
+    const own = [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+    if (!own) continue;
+    if (parseFloat(getComputedStyle(one).fontSize) < 11) say("small", one);
+    const range = document.createRange();
+    range.selectNodeContents(one);
+    const word = !/\\s/.test(one.textContent.trim()) && one.childElementCount === 0;
+    if (word && one.clientWidth && range.getClientRects().length > 1) say("word over lines", one);
+  }
+  if (!panel.textContent.trim()) said.push("empty");
+  return said;
+}"""
+AUDIT = """async () => {
+  const found = await axe.run({include: ["#panel"], exclude: [[".paper svg > *"]]}, {resultTypes: ["violations"]});
+  return found.violations.filter((one) => ["serious", "critical"].includes(one.impact))
+    .map((one) => `${one.id}: ${one.nodes.slice(0, 2).map((node) => node.html.slice(0, 120)).join(" | ")}`);
+}"""
+WHOLE = """
+.live.bench, .live.bench main { height: auto !important; overflow: visible !important; }
+.right, .live.bench .panel, .side { overflow: visible !important; }
+"""
+DRAWN = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+FOREIGN = re.compile(r"\b[A-Za-z][a-z]{3,}\b")
+
+
+@dataclass
+class Findings:
+    """What is wrong, with the views in which it is; pictures of each panel."""
+
+    wrong: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
+    foreign: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    audits: int = 0
+    pictures: dict[tuple[str, int], dict[tuple[str, str], Path]] = field(
+        default_factory=lambda: defaultdict(dict)
+    )
+
+
+def packed(text: str) -> str:
+    """A text as the link of the workbench holds it."""
+    made = zlib.compressobj(9, zlib.DEFLATED, -15)
+    return base64.urlsafe_b64encode(made.compress(text.encode()) + made.flush()).decode().rstrip("=")
+
+
+def description(name: str) -> str:
+    """The text of a built-in description; the crank-rocker has limits of its dimensions."""
+    return example_text(name) + (TOLERANCES if name == "crank-rocker" else "")
+
+
+def until(window: Any, condition: str, argument: object = None) -> None:
+    """Wait, picture by picture, until something of the page holds."""
+    for _ in range(PATIENCE // 16):
+        window.evaluate(DRAWN)
+        if window.evaluate(condition, argument):
+            return
+    raise SystemExit(f"it never came to hold: {condition} {argument or ''}")
+
+
+def settle(window: Any) -> None:
+    """Wait until nothing is computed any more and all is drawn."""
+    until(window, f"document.querySelector('.bench') && {SETTLED}")
+    window.evaluate(DRAWN)
+
+
+def panels(window: Any) -> list[str]:
+    """Names of the panels that the description has."""
+    tabs = window.locator('[role="tab"]:not(.away)')
+    return [str(one).removeprefix("tab-") for one in tabs.evaluate_all("all => all.map(one => one.id)")]
+
+
+def open_panel(window: Any, name: str) -> None:
+    """Open a panel and wait until it is there."""
+    window.evaluate("name => document.getElementById(`tab-${name}`).click()", name)
+    until(
+        window,
+        "name => document.querySelector(`#panel[data-topic='${name}'][data-ready=true]`) !== null",
+        name,
+    )
+    settle(window)
+
+
+def picture(window: Any) -> Image.Image:
+    """The whole panel."""
+    style = window.add_style_tag(content=WHOLE)
+    window.evaluate(DRAWN)
+    shown = Image.open(io.BytesIO(window.locator(".card.panel").screenshot())).convert("RGB")
+    style.evaluate("one => one.remove()")
+    return shown.crop((0, 0, shown.width, min(shown.height, TALLEST)))
+
+
+def look(
+    window: Any, name: str, view: tuple[str, str], found: Findings, arguments: argparse.Namespace
+) -> None:
+    """A panel at all widths."""
+    (language, scheme), folder = view, arguments.folder
+    for wide in WIDTHS:
+        window.set_viewport_size({"width": wide, "height": HEIGHT})
+        settle(window)
+        said = [*dict.fromkeys(window.evaluate(FITS))]
+        if arguments.audit and wide in AUDITED:
+            found.audits += 1
+            said += window.evaluate(AUDIT)
+        for one in said:
+            found.wrong[name, one].append(f"{language} {wide} {scheme}")
+            print(f"{name}: {one} [{language} {wide} {scheme}]", flush=True)
+        turn = LANGUAGES.index(language) + WIDTHS.index(wide)
+        if arguments.square and SCHEMES.index(scheme) != turn % 2:
+            continue  # each language at each width, by day or at night
+        file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
+        picture(window).save(file)
+        found.pictures[name, wide][language, scheme] = file
+    if language != "en":
+        text = window.inner_text("#panel")
+        found.foreign[name] |= set(FOREIGN.findall(text))
+
+
+def walk(running: Any, address: str, found: Findings, arguments: argparse.Namespace) -> None:
+    """Every panel in a language, by day or at night, window by window."""
+    for language in arguments.languages:
+        for scheme in SCHEMES:
+            seen: set[str] = set()
+            for name in DESCRIPTIONS:
+                context = running.new_context(
+                    viewport={"width": WIDTHS[-1], "height": HEIGHT}, color_scheme=scheme
+                )
+                context.add_init_script(f"localStorage.setItem('centrode.language', '{language}')")
+                window = context.new_page()
+                window.set_default_timeout(PATIENCE)
+                said: list[str] = []
+                window.on("console", lambda message, said=said: said.append(message.text))
+                window.on("pageerror", lambda error, said=said: said.append(str(error)))
+                window.goto(f"{address}#m={packed(description(name))}")
+                until(window, "document.querySelectorAll('[role=tab]:not(.away)').length > 4")
+                settle(window)
+                if arguments.audit:
+                    window.evaluate(AXE.read_text("utf-8"))
+                for topic in panels(window):
+                    again = topic in AGAIN.get(name, ())
+                    key = f"{topic}-{name}" if again else topic
+                    if (topic in seen and not again) or (arguments.topics and key not in arguments.topics):
+                        continue
+                    seen.add(topic)
+                    open_panel(window, topic)
+                    look(window, key, (language, scheme), found, arguments)
+                    window.set_viewport_size({"width": WIDTHS[-1], "height": HEIGHT})
+                for message in said:
+                    found.wrong[name, message].append(f"{language} {scheme}")
+                context.close()
+
+
+def write_sheets(found: Findings, folder: Path) -> Iterator[Path]:
+    """One picture of each panel at each width: languages beside each other, day and night."""
+    for (name, wide), files in found.pictures.items():
+        views = {view: Image.open(file) for view, file in files.items()}
+        size = (
+            sum(one.width + GAP for one in views.values()) + GAP,
+            max(one.height for one in views.values()) + HEAD + GAP,
+        )
+        sheet = Image.new("RGB", size, "#8899AA")
+        pen, x = ImageDraw.Draw(sheet), GAP
+        for (language, scheme), one in sorted(views.items(), key=lambda item: SCHEMES.index(item[0][1])):
+            pen.text((x, 5), f"{name}  {wide}  {language}  {scheme}", fill="black")
+            sheet.paste(one, (x, HEAD))
+            x += one.width + GAP
+        file = folder / f"{name}-{wide}.png"
+        sheet.save(file)
+        yield file
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Write the sheets and print what is wrong; the exit code is 1 where axe-core or the layout has findings."""
+    parser = argparse.ArgumentParser(prog="python -m tools.app_panels", description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--topics", nargs="+", default=[])
+    parser.add_argument("--languages", nargs="+", default=LANGUAGES, choices=LANGUAGES)
+    parser.add_argument("--audit", action="store_true")
+    parser.add_argument("--square", action="store_true")
+    arguments = parser.parse_args(words)
+    (arguments.folder / "views").mkdir(parents=True, exist_ok=True)
+    found = Findings()
+    program = next(filter(None, map(shutil.which, BROWSERS)))
+    with workbench() as address, sync_playwright() as driver:
+        running = driver.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        walk(running, address, found, arguments)
+        running.close()
+    files = [*write_sheets(found, arguments.folder)]
+    for name, latin in sorted(found.foreign.items()):
+        print(f"{name}: in Latin letters: {', '.join(sorted(latin))}")
+    print(
+        f"{len({name for name, _wide in found.pictures})} panels, {len(files)} sheets, {found.audits} audits"
+    )
+    return int(bool(found.wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
