@@ -502,6 +502,14 @@ FORCES = (
     Quantity(
         "critical_frequency", "ω", "rad/s", mark("frequency of oscillations that begin at a critical value")
     ),
+    Quantity("occasion_part", "", "1", mark("part that an occasion belongs to")),
+    Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
+    Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
+    Quantity(
+        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
+    ),
+    Quantity("controller_output", "u", "N m", mark("output of a controller")),
+    Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
 )
 
 

@@ -11,6 +11,7 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.contacts import cases as contacts
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.free_motions import examples as free_examples
 from tools.campaigns.free_motions import references as free_references
@@ -22,6 +23,8 @@ from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
 from tools.campaigns.source_files import cases as source_files
 from tools.campaigns.spheres import cases as spheres
+from tools.campaigns.synthesis import paths as synthesised_paths
+from tools.campaigns.synthesis import poses as five_poses
 
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
@@ -39,9 +42,12 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         free_motions.CAMPAIGN,
         free_examples.CAMPAIGN,
         free_references.CAMPAIGN,
+        contacts.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        synthesised_paths.CAMPAIGN,
+        five_poses.CAMPAIGN,
         imports.CAMPAIGN,
     )
 }

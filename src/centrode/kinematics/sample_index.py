@@ -40,6 +40,8 @@ DIMENSIONS = frozenset(
         *("side", "side_point", "side_link", "held", "gear", "gear_body", "friction", "occasion"),
         *(
             "coordinate",
+            "contact",
+            "controller",
             "source",
             "equilibrium",
             "mode",

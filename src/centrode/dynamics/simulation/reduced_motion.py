@@ -50,6 +50,7 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import check_size, solve
 from centrode.locale import _
+from centrode.model.contact_checks import needs_events
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
@@ -176,6 +177,12 @@ def reduced_setting(mechanism: Mechanism, settings: Simulation | None = None) ->
     settings = settings or mechanism.simulation
     if settings is None:
         raise no_settings()
+    if needs_events(mechanism):
+        raise InputError(
+            "[simulation] equations",
+            _("stops, clamps, events, belts and static friction are computed by the equations of all links"),
+            _('remove equations = "reduced"'),
+        )
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",

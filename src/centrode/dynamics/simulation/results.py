@@ -242,7 +242,7 @@ def check_ended(results: SimulationResults) -> None:
 
 def _check_multibody(run: xr.Dataset) -> None:
     """Raise MotionError where the equations of all links did not get to the end."""
-    if run.attrs["ended"] == "duration":
+    if run.attrs["ended"] in ("duration", "event"):
         return
     time = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
     cause = str(run.attrs["cause"])
