@@ -15,9 +15,10 @@ import tomli_w
 from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.motion import initial_place, motion
 from centrode.locale import _
-from centrode.model.files import in_short_lines, mechanism_from
+from centrode.model.files import mechanism_from
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import Problem, read_content, read_link_name, two_points
+from centrode.model.toml import in_short_lines
 from centrode.model.units import read_quantity
 from centrode.sketches.dxf_sketches import dxf_sketch
 from centrode.sketches.interpretation import read_sketch
@@ -94,7 +95,8 @@ def import_sketch(
     """
     file = Path(path)
     content = read_content(file, FILE_SIZE)
-    if not (isinstance(scale, int | float) and not isinstance(scale, bool) and 0.0 < scale < 1e9):
+    given: object = scale  # from Python anything may come
+    if isinstance(given, bool) or not (isinstance(given, int | float) and 0.0 < given < 1e9):
         raise InputError("scale", _("a scale is a positive number"), _("give 5 for a drawing 1:5"))
     return sketch_content(content, file.name, file.suffix.lower(), float(scale), join, drive)
 
@@ -255,7 +257,9 @@ class _Description:
 
     # Drives.
 
-    def _choose_drives(self, tables: dict[str, Any], wanted: str | None) -> tuple[Mechanism, list[dict[str, Any]]]:
+    def _choose_drives(
+        self, tables: dict[str, Any], wanted: str | None
+    ) -> tuple[Mechanism, list[dict[str, Any]]]:
         if wanted is not None:
             if wanted not in self.links[1:]:
                 what = _("the drawing has no link {name}").format(name=wanted)
@@ -299,7 +303,9 @@ class _Description:
             )
             if len(hinged) == 1 and max(arms) > 0.0:
                 cranks.append((max(arms), name))
-        trials = [({"link": name, "speed": "1 rad/s"}, name) for _arm, name in sorted(cranks)[:CANDIDATES]]
+        trials: list[tuple[dict[str, Any], str]] = [
+            ({"link": name, "speed": "1 rad/s"}, name) for _arm, name in sorted(cranks)[:CANDIDATES]
+        ]
         if not cranks:
             led = [(index, one) for index, one in enumerate(tables.get("guides", [])) if "on" not in one]
             trials = [({"guide": one.get("name", one["point"]), "start": 0, "speed": "10 mm/s"}, one["point"])
