@@ -27,7 +27,9 @@ def test_a_drawing_is_printed_or_written_and_runs(centrode: Centrode, tmp_path: 
     again = centrode("import", drawing, "--out", file)
     assert (again.code, "exists already" in again.err) == (2, True)
     assert centrode("check", file).code == 0
-    scaled = centrode("import", drawing, "--scale", "2", "--drive", "CD", "--join", "0.1 mm", "--out", file, "--force")
+    scaled = centrode(
+        "import", drawing, "--scale", "2", "--drive", "CD", "--join", "0.1 mm", "--out", file, "--force"
+    )
     assert scaled.code == 0
     mechanism = ct.read_mechanism(file)
     assert mechanism.drives[0].link == "CD"

@@ -267,7 +267,8 @@ def _transform(text: str, where: str) -> Matrix:
     if _TRANSFORM.sub("", text).strip(" ,\t\r\n"):
         raise InputError(where, _("a transform of the drawing cannot be read"), _("save it as plain SVG"))
     for kind, inside in _TRANSFORM.findall(text):
-        step = _step(kind, [float(x) for x in _NUMBER.findall(inside)])
+        numbers = [float(x) for x in _NUMBER.findall(inside)]
+        step = _step(kind, numbers) if all(map(math.isfinite, numbers)) else None
         if step is None:
             raise InputError(where, _("a transform of the drawing cannot be read"), _("save it as plain SVG"))
         matrix = _product(matrix, step)
