@@ -2,11 +2,11 @@
 
 python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square]
 
-For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day or
-at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut, letters
-that are too small, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and what of a
-Russian or Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two narrower
-widths. It needs a Chromium and playwright, as the tests of pages do.
+For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day
+or at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut,
+letters that are too small, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and
+what of a Russian or Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two
+narrower widths. It needs a Chromium and playwright, as the tests of pages do.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from .model.cam_files import read_cam as read_cam
 from .model.cam_files import parse_cam as parse_cam
 from .model.cam_files import cam_text as cam_text
 from .model.pmks import from_pmks as from_pmks
+from .sketches.imported_sketch import import_sketch as import_sketch
 from .model.files import value_at as value_at
 from .model.files import with_value as with_value
 
@@ -61,6 +62,8 @@ from .dynamics.force_polygons.polygons import force_polygons as force_polygons
 from .dynamics.steady_motion.steady import steady_motion as steady_motion
 from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.simulation.simulate import simulate as simulate
+from .dynamics.equilibria.equilibrium import equilibrium as equilibrium
+from .dynamics.equilibria.modes import modes as modes
 from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
 

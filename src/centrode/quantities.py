@@ -474,6 +474,42 @@ FORCES = (
     Quantity("occasion_time", "t", "s", mark("time of an occasion")),
     Quantity("occasion_value", "q", "rad", mark("value of the drive at an occasion"), by_drive=-1),
     Quantity("occasion_kind", "", "1", mark("kind of an occasion")),
+    Quantity("stability", "", "1", mark("stability of an equilibrium")),
+    Quantity("growth_rate", "σ", "1/s", mark("real part of an eigenvalue: how fast a departure grows")),
+    Quantity(
+        "damped_frequency", "ω_d", "rad/s", mark("imaginary part of an eigenvalue: frequency with damping")
+    ),
+    Quantity("natural_frequency", "ω_0", "rad/s", mark("natural angular frequency of a mode")),
+    Quantity("undamped_frequency", "ω_u", "rad/s", mark("natural angular frequency without damping")),
+    Quantity("damping_ratio", "ζ", "1", mark("damping ratio of a mode")),
+    Quantity("mode_amplitude", "a", "1", mark("amplitude of a coordinate in a mode")),
+    Quantity("mode_phase", "ψ", "rad", mark("phase of a coordinate in a mode")),
+    Quantity("holding_moment", "M_h", "N m", mark("moment or force that holds the drive"), by_drive=1),
+    Quantity("friction_reach", "Δq", "rad", mark("departure up to which dry friction holds, linearised")),
+    Quantity("friction_band", "q", "rad", mark("ends of the interval in which dry friction holds")),
+    Quantity("friction_holds_everywhere", "", "1", mark("whether dry friction holds in every position")),
+    Quantity("branch", "", "1", mark("number of a branch of equilibria")),
+    Quantity("branch_value", "p", "1", mark("number that is varied along a branch of equilibria")),
+    Quantity("branch_coordinate", "q", "rad", mark("generalised coordinate along a branch of equilibria")),
+    Quantity("branch_stability", "", "1", mark("stability along a branch of equilibria")),
+    Quantity("coordinate_gradient", "∂q/∂p", "1", mark("derivative of a coordinate by a number")),
+    Quantity("speed_gradient", "∂q̇/∂p", "1", mark("derivative of the speed of a coordinate by a number")),
+    Quantity("position_gradient", "∂r/∂p", "1", mark("derivative of a position by a number")),
+    Quantity("point_speed_gradient", "∂v/∂p", "1", mark("derivative of the velocity of a point by a number")),
+    Quantity("critical_value", "p", "1", mark("critical value of the number that is varied")),
+    Quantity("critical_kind", "", "1", mark("kind of a critical value")),
+    Quantity("critical_coordinate", "q", "rad", mark("generalised coordinate at a critical value")),
+    Quantity(
+        "critical_frequency", "ω", "rad/s", mark("frequency of oscillations that begin at a critical value")
+    ),
+    Quantity("occasion_part", "", "1", mark("part that an occasion belongs to")),
+    Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
+    Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
+    Quantity(
+        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
+    ),
+    Quantity("controller_output", "u", "N m", mark("output of a controller")),
+    Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
 )
 
 

@@ -11,11 +11,13 @@ from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.clearances import cases as clearances
 from tools.campaigns.clusters import cases as clusters
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.contacts import cases as contacts
 from tools.campaigns.free_motions import cases as free_motions
 from tools.campaigns.free_motions import examples as free_examples
 from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
+from tools.campaigns.imports import cases as imports
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -38,8 +40,10 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         free_motions.CAMPAIGN,
         free_examples.CAMPAIGN,
         free_references.CAMPAIGN,
+        contacts.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        imports.CAMPAIGN,
     )
 }

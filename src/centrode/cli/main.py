@@ -29,6 +29,7 @@ from centrode.cli.draw import draw
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.gears import gears
+from centrode.cli.imports import import_drawing
 from centrode.cli.page import page
 from centrode.cli.report import report
 from centrode.cli.schema import schema
@@ -63,6 +64,7 @@ OWN: tuple[click.Command, ...] = (
     draw,
     sheets,
     export,
+    import_drawing,
     chains,
     examples,
     schema,

@@ -12,16 +12,19 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.state import Centre
+from centrode.kinematics.preparation import ready
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.structure.gearing import Straight
 
 if TYPE_CHECKING:
     import xarray
 
     from centrode.dynamics.state import Mass
+    from centrode.model.links import Rolling
     from centrode.model.mechanism import Drive, Guide
 
 Place: TypeAlias = tuple[float, float]
@@ -75,14 +78,39 @@ class Tree:
         return found
 
 
-def tree_of(mechanism: Mechanism, places: Mapping[str, Place], directions: Mapping[str, Place]) -> Tree:
+@dataclass(frozen=True)
+class Contact:
+    """A rolling wheel as a body of its own: what slides along its line, or the arm about the centre of its circle.
+
+    Attributes
+    ----------
+    wheel, on, centre : the wheel, the body that it rolls on, the point that is its centre
+    pair : by which the body hangs on `on`
+    own : the body is not a link of the description
+    share : turn of the wheel for a way of the body [rad/m], or for its turn, both against `on`
+    """
+
+    wheel: str
+    on: str
+    centre: str
+    pair: Pair
+    share: float
+    own: bool = True
+
+
+def tree_of(
+    mechanism: Mechanism,
+    places: Mapping[str, Place],
+    directions: Mapping[str, Place],
+    contacts: Sequence[Contact] = (),
+) -> Tree:
     """The tree; `places` of the points and `directions` of the guides are those of the initial position [m].
 
     What slides on a body is reached from it at once: loops then close in hinges. A loop of prismatic pairs alone closes
     in a carriage: a body that slides like the last of them, and is pinned where that one is, as none of them turns
     against another.
     """
-    pairs = _pairs(mechanism, places, directions)
+    pairs = _pairs(mechanism, places, directions, contacts)
     tree, waiting, known = Tree(), deque([FRAME]), {FRAME}
     used: list[Pair] = []
 
@@ -132,9 +160,14 @@ def _left_over(pairs: list[Pair], used: list[Pair]) -> list[Pair]:
     return left
 
 
-def _pairs(mechanism: Mechanism, places: Mapping[str, Place], directions: Mapping[str, Place]) -> list[Pair]:
+def _pairs(
+    mechanism: Mechanism,
+    places: Mapping[str, Place],
+    directions: Mapping[str, Place],
+    contacts: Sequence[Contact],
+) -> list[Pair]:
     """All pairs; those of driven links with the bodies that they are driven against come first."""
-    members = _members(mechanism)
+    members = _members(mechanism, contacts)
     found = [
         Pair(f"{first} {second} {point}", first, second, places[point], point=point)
         for point, bodies in members.items()
@@ -151,11 +184,12 @@ def _pairs(mechanism: Mechanism, places: Mapping[str, Place], directions: Mappin
             length = (way[0] ** 2 + way[1] ** 2) ** 0.5
             barrel, rod = cylinder_names(drive.id)
             found.append(Pair(f"drive {drive.id}", barrel, rod, end, (way[0] / length, way[1] / length)))
+    found += [contact.pair for contact in contacts if contact.own]
     driven = {frozenset((drive.link, drive.relative_to)) for drive in mechanism.drives if drive.link}
     return sorted(found, key=lambda pair: frozenset((pair.first, pair.second)) not in driven)
 
 
-def _members(mechanism: Mechanism) -> dict[str, list[str]]:
+def _members(mechanism: Mechanism, contacts: Sequence[Contact]) -> dict[str, list[str]]:
     """Point -> the bodies that are hinged there; a link that a guide holds needs no other slider."""
     found: dict[str, list[str]] = {}
     for point in mechanism.frame.points:
@@ -169,6 +203,9 @@ def _members(mechanism: Mechanism) -> dict[str, list[str]]:
     for drive in mechanism.drives:
         for point, body in zip(drive.distance or (), cylinder_names(drive.id), strict=False):
             found.setdefault(point, []).append(body)
+    for contact in contacts:
+        if contact.own:
+            found.setdefault(contact.centre, []).append(contact.pair.second)
     return {point: bodies for point, bodies in found.items() if len(bodies) > 1}
 
 
@@ -185,6 +222,11 @@ def carriage_name(pair: str) -> str:
 def cylinder_names(drive: str) -> tuple[str, str]:
     """Barrel and rod of a cylinder."""
     return f"barrel {drive}", f"rod {drive}"
+
+
+def contact_name(wheel: str) -> str:
+    """The body that keeps a rolling wheel at its track."""
+    return f"track {wheel}"
 
 
 def outline(places: list[Place]) -> list[tuple[Place, Place]]:
@@ -241,7 +283,9 @@ class Pose:
     pace, step : how fast the drives run [rad/s], and the step of time [s] that this asks for
     """
 
-    def __init__(self, mechanism: Mechanism, motion: xarray.Dataset, nominal: float = NOMINAL) -> None:
+    def __init__(
+        self, mechanism: Mechanism, motion: xarray.Dataset, nominal: float = NOMINAL, *, rolls: bool = False
+    ) -> None:
         self.mechanism = mechanism
         first = motion.isel(sample=0)
         self.places: dict[str, Place] = {
@@ -252,10 +296,19 @@ class Pose:
         self.angles[FRAME] = 0.0
         directions = {guide.id: self._direction(guide) for guide in mechanism.guides}
         self.spins, self.slides = speeds_of(mechanism, first)
-        self.tree: Tree = tree_of(mechanism, self.places, directions)
-        self.masses: dict[str, Mass] = {mass.link: mass for mass in masses_of(mechanism)}
         spread = [max(values) - min(values) for values in zip(*self.places.values(), strict=True)]
         self.size = max(spread)
+        self.contacts = self._contacts() if rolls else []
+        for contact in [one for one in self.contacts if one.own]:
+            turn = self.spins[contact.wheel] - self.spins[contact.on]
+            body = contact.pair.second
+            if contact.pair.direction is None:
+                self.spins[body] = self.spins[contact.on] + turn / contact.share
+            else:
+                self.spins[body] = self.spins[contact.on]
+                self.slides[contact.pair.name] = turn / contact.share
+        self.tree: Tree = tree_of(mechanism, self.places, directions, self.contacts)
+        self.masses: dict[str, Mass] = {mass.link: mass for mass in masses_of(mechanism)}
         self.pace = max(pace_of(drive, self.size) for drive in mechanism.drives) or 1.0
         self.step = min(LONGEST_STEP, 2 * math.pi / self.pace / STEPS)
 
@@ -291,6 +344,45 @@ class Pose:
     def _direction(self, guide: Guide) -> Place:
         return turn_vector(guide.unit, self.angles[guide.on])
 
+    def _contacts(self) -> list[Contact]:
+        """Rolling wheels: on a line their centre slides, on a circle it turns about the circle's centre."""
+        gearing = ready(self.mechanism).structure.dimensions.gearing
+        found = []
+        for wheel in self.mechanism.rolling:
+            track, name, body = gearing.track[wheel.id], f"rolling {wheel.id}", contact_name(wheel.id)
+            centre = self.places[wheel.centre]
+            if isinstance(track, Straight):
+                direction = turn_vector(_numbers(track.direction), self.angles[wheel.on])
+                pair = Pair(name, wheel.on, body, centre, direction)
+                share = -1.0 / float(gearing.radius[wheel.id])
+            else:
+                place = self._place_on(wheel.on, _numbers(track.centre))
+                arm = self._arm(wheel, place)
+                pair = Pair(name, wheel.on, arm or body, place, point=f"{name} centre")
+                share = float(gearing.spin(wheel.id))
+            own = pair.second == body
+            found.append(Contact(wheel.link, wheel.on, wheel.centre, pair, share, own))
+        return found
+
+    def _arm(self, wheel: Rolling, place: Place) -> str | None:
+        """The link that leads a wheel's centre about that of its circle, if there is one."""
+        links = self.mechanism.links
+        on = self.mechanism.frame.points if wheel.on == FRAME else links[wheel.on].coordinates
+        for name, link in links.items():
+            if name != wheel.link and wheel.centre in link.coordinates:
+                pivots = [point for point in link.coordinates if point in on and point != wheel.centre]
+                if any(math.dist(self.places[point], place) <= 1e-12 * self.size for point in pivots):
+                    return name
+        return None
+
+    def _place_on(self, body: str, own: Place) -> Place:
+        """A place in the axes of a body, in those of the frame."""
+        if body == FRAME:
+            return own
+        point, (x, y) = next(iter(self.mechanism.links[body].coordinates.items()))
+        way = turn_vector(less(own, (float(x), float(y))), self.angles[body])
+        return self.places[point][0] + way[0], self.places[point][1] + way[1]
+
     def turns(self, factors: Mapping[str, float]) -> dict[str, float]:
         """A sum of links' turns as joints and their factors."""
         found: dict[str, float] = {}
@@ -309,6 +401,10 @@ class Pose:
         if pair.direction is None:
             return self.spins[name] - self.spins[parent]
         return self.slides[pair.name]
+
+
+def _numbers(vector: Sequence[Any]) -> Place:
+    return float(vector[0]), float(vector[1])
 
 
 def pace_of(drive: Drive, size: float) -> float:

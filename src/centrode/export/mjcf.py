@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from centrode.errors import NotComputedYet
-from centrode.export.body_trees import NOMINAL, THIN, Pair, Place, Pose, less, number, numbers, outline
+from centrode.export.body_trees import (
+    NOMINAL,
+    THIN,
+    Contact,
+    Pair,
+    Place,
+    Pose,
+    less,
+    number,
+    numbers,
+    outline,
+)
 from centrode.export.mjcf_loads import WORLD_SITE, ModelLoads, add_tendons, model_loads
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
@@ -76,21 +87,33 @@ ROTOR = 0.1
 
 
 def add_constraints(pose: Pose, root: ET.Element) -> None:
-    """Loops and gears as equality constraints."""
+    """Loops, gears and rolling wheels as equality constraints."""
     gears = pose.mechanism.gears
-    if not pose.tree.closures and not gears:
+    if not pose.tree.closures and not gears and not pose.contacts:
         return
-    if gears:
+    if gears or pose.contacts:
         tendons = _tendons(root)
         for gear in gears:
             first, second = gear.links
             _fixed_tendon(tendons, f"gear {gear.id}", pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0,
                                                             first: -gear.ratio}))  # fmt: skip
+        for contact in pose.contacts:
+            _fixed_tendon(tendons, contact.pair.name, _rolling(pose, contact))
     equality = ET.SubElement(root, "equality")
     for pair in pose.tree.closures:
         _closure(pose, equality, pair)
     for gear in gears:
         ET.SubElement(equality, "tendon", name=f"gear {gear.id}", tendon1=f"gear {gear.id}")
+    for contact in pose.contacts:
+        ET.SubElement(equality, "tendon", name=contact.pair.name, tendon1=contact.pair.name)
+
+
+def _rolling(pose: Pose, contact: Contact) -> dict[str, float]:
+    """What a wheel that rolls keeps constant: its turn against its track less that by its way or its arm."""
+    pair, share = contact.pair, contact.share
+    if pair.direction is None:
+        return pose.turns({contact.wheel: 1.0, contact.on: share - 1.0, pair.second: -share})
+    return pose.turns({contact.wheel: 1.0, contact.on: -1.0}) | {pair.name: -share}
 
 
 def _closure(pose: Pose, equality: ET.Element, pair: Pair) -> None:
@@ -178,7 +201,7 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
     Parameters
     ----------
     mechanism : Mechanism
-        In the plane, without wheels that roll.
+        In the plane.
     motion : Dataset
         Its motion, whose first sample is the initial position.
     free : bool
@@ -196,16 +219,13 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
     Raises
     ------
     NotComputedYet
-        Spherical linkages, wheels that roll, and bodies too light for MuJoCo.
+        Spherical linkages, and bodies too light for MuJoCo.
     """
     if mechanism.space == "sphere":
         raise NotComputedYet(
             "space", _("models of MuJoCo are made of planar linkages"), _("choose a planar linkage")
         )
-    if mechanism.rolling:
-        what = _("models of MuJoCo have no wheels that roll")
-        raise NotComputedYet(f"[[rolling]] {mechanism.rolling[0].id}", what, _("remove it"))
-    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL)
+    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL, rolls=True)
     if free and mechanism.simulation is not None and mechanism.simulation.duration is not None:
         pose.step = min(pose.step, mechanism.simulation.duration / FREE_STEPS)
     if min(pose.least, pose.nominal_inertia) < LIGHTEST:
@@ -247,6 +267,10 @@ def _document(pose: Pose, free: bool, pace: float) -> str:
     loads = model_loads(pose)
     if loads.tendons:
         add_tendons(loads, _tendons(root))
+    relief = {weight.link: weight.relief for weight in loads.weights if weight.relief}
+    for element in world.iter("body"):
+        if element.get("name") in relief:
+            element.set("gravcomp", number(relief[str(element.get("name"))]))
     if any("refsite" in load.attributes for load in loads.actuators):
         ET.SubElement(world, "site", name=WORLD_SITE)
     kept = pose.mechanism.drives if not free else ()

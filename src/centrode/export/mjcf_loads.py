@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 from xml.etree import ElementTree as ET
 
-from centrode.export.body_trees import Pose, number, numbers
+from centrode.export.body_trees import Pose, number, numbers, turn_vector
 from centrode.model.loads import (
     AnyLoad,
     BearingFriction,
@@ -55,11 +56,20 @@ class ActuatorLoad:
 
 
 @dataclass(frozen=True)
+class OwnWeight:
+    """A link whose weight is not its mass times gravity: the share of gravity that is taken off it."""
+
+    link: str
+    relief: float
+
+
+@dataclass(frozen=True)
 class ModelLoads:
     """Loads of a model, and the labels of those that it does not hold."""
 
     tendons: tuple[TendonLoad, ...]
     actuators: tuple[ActuatorLoad, ...]
+    weights: tuple[OwnWeight, ...]
     omitted: tuple[str, ...]
 
 
@@ -75,11 +85,12 @@ def model_loads(pose: Pose) -> ModelLoads:
     return ModelLoads(
         tuple(x for x in found.values() if isinstance(x, TendonLoad)),
         tuple(x for x in found.values() if isinstance(x, ActuatorLoad)),
+        tuple(x for x in found.values() if isinstance(x, OwnWeight)),
         tuple(label for label, x in found.items() if x is None),
     )
 
 
-def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorLoad | None:
+def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorLoad | OwnWeight | None:
     name = f"load {label}"
     match load:
         case PointSpring(points=points, stiffness=stiffness, free_length=free):
@@ -103,9 +114,20 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case GuideForce(guide=guide, value=float(value), table=None, pressure=None):
             return ActuatorLoad(name, {}, {f"guide {guide}": 1.0}, value)
         case PointForce(point=point, vector=(float(x), float(y)), axes="frame", while_moving=None):
-            gear = numbers((x, y, 0.0, 0.0, 0.0, 0.0))
-            (site,) = _sites(pose, (point,))
-            return ActuatorLoad(name, {"site": site, "refsite": WORLD_SITE, "gear": gear}, {}, 1.0)
+            return _force(pose, name, point, (x, y))
+        case PointForce(point=point, vector=(float(x), float(y)), axes=str(axes), while_moving=None) if (
+            axes != FRAME and point in pose.mechanism.links[axes].coordinates
+        ):
+            # in the axes of the link's own site, which are initially those of the frame
+            gear = numbers((*turn_vector((x, y), pose.angles[axes]), 0.0, 0.0, 0.0, 0.0))
+            return ActuatorLoad(name, {"site": f"{axes}.{point}", "gear": gear}, {}, 1.0)
+        case PointWeight(point=point, value=float(value)):
+            return _force(pose, name, point, turned_down(pose.mechanism, value))
+        case LinkWeight(link=link, value=None) if link in pose.masses:
+            return OwnWeight(link, 0.0)
+        case LinkWeight(link=link, value=float(value)) if link in pose.masses:
+            own = float(pose.masses[link].mass) * math.hypot(*(pose.mechanism.gravity or (0.0, 0.0)))
+            return OwnWeight(link, 1.0 - value / own) if own else None
         case (
             HingeFriction() | GuideFriction() | BearingFriction() | SliderFriction()
             | Torque() | GuideForce() | PointForce() | LinkWeight() | PointWeight()
@@ -113,6 +135,20 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
             return None
         case _:
             assert_never(load)
+
+
+def _force(pose: Pose, name: str, point: str, vector: Sequence[float]) -> ActuatorLoad:
+    """A constant force, in the axes of the frame."""
+    (site,) = _sites(pose, (point,))
+    gear = numbers((*vector, 0.0, 0.0, 0.0, 0.0))
+    return ActuatorLoad(name, {"site": site, "refsite": WORLD_SITE, "gear": gear}, {}, 1.0)
+
+
+def turned_down(mechanism: Mechanism, size: float) -> tuple[float, float]:
+    """A vector of a size in the direction of gravity."""
+    x, y = (float(part) for part in mechanism.gravity or (0.0, 0.0))
+    strength = math.hypot(x, y) or 1.0
+    return size * x / strength, size * y / strength
 
 
 def _sites(pose: Pose, points: Sequence[str]) -> tuple[str, ...]:

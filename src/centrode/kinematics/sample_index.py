@@ -38,7 +38,21 @@ DIMENSIONS = frozenset(
         *("sample", "point", "link", "guide", "rolling", "drive", "drive_2", "drive_3", "axis", "event"),
         *("mechanism", "joint", "group", "pair", "constraint", "load", "jump", "order", "coefficient"),
         *("side", "side_point", "side_link", "held", "gear", "gear_body", "friction", "occasion"),
-        *("coordinate", "source"),
+        *(
+            "coordinate",
+            "contact",
+            "controller",
+            "source",
+            "equilibrium",
+            "mode",
+            "freedom",
+            "root",
+            "number",
+            "band",
+            "end",
+            "branch_point",
+            "critical",
+        ),
         *("bearing", "surface", "sector"),
     )
 )

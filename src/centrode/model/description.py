@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PlainVali
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
+from centrode.model.contacts import MOST_CONTACTS, Clamp, EventCondition, Stop
 from centrode.model.drives import Drive, motion_parameter_of
 from centrode.model.gears import Gear
 from centrode.model.initial_points import with_links_between_points
@@ -23,6 +24,7 @@ from centrode.model.motion_parameter import (
     MotionParameter,
     drive_coordinate,
 )
+from centrode.model.motors import MOST_CONTROLLERS, Controller, DriveMotor
 from centrode.model.reading import (
     FRAME,
     DescriptionPart,
@@ -85,6 +87,11 @@ class Description(DescriptionPart):
     loads: Annotated[
         tuple[Annotated[AnyLoad, PlainValidator(read_load)], ...], bounded_list(reading.LOADS)
     ] = ()
+    stops: Annotated[tuple[Stop, ...], bounded_list(MOST_CONTACTS)] = ()
+    clamps: Annotated[tuple[Clamp, ...], bounded_list(MOST_CONTACTS)] = ()
+    events: Annotated[tuple[EventCondition, ...], bounded_list(MOST_CONTACTS)] = ()
+    motors: Annotated[tuple[DriveMotor, ...], bounded_list(reading.DRIVES)] = ()
+    controllers: Annotated[tuple[Controller, ...], bounded_list(MOST_CONTROLLERS)] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from math import pi
-from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, assert_never, get_args
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias, assert_never, get_args
 
 from pydantic import ConfigDict, PlainValidator, ValidationError, ValidationInfo, field_validator
 
@@ -45,6 +45,8 @@ from centrode.numerics.text_formula import compile_formula
 # Which keys the loads of each kind need, and which they may have.
 
 FRICTION_SIZES = ("value", "viscous", "quadratic", "coefficient")
+# what dry friction of a given size has besides: while nothing slips it holds more, and what rubs may be a belt
+_OF_DRY, _OF_BELT = ("static",), ("surface_speed",)
 # what friction by a coefficient has besides
 _OF_HINGE, _OF_SLIDER = ("radius", "fit", "pin"), ("length", "height")
 # a force in a point has a vector, one along a guide a value or a table
@@ -76,7 +78,7 @@ _KEYS_OF: Mapping[str, LoadKeys] = {
     "friction": LoadKeys(
         ("link", "guide", "point"),
         (),
-        (*FRICTION_SIZES, "form", "relative_to", "axis", *_OF_HINGE, *_OF_SLIDER),
+        (*FRICTION_SIZES, *_OF_DRY, *_OF_BELT, "form", "relative_to", "axis", *_OF_HINGE, *_OF_SLIDER),
     ),
 }
 
@@ -146,6 +148,9 @@ def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) ->
     amounts = [key for key in FRICTION_SIZES if key in present]
     if not amounts:
         return [Problem(_("one of {keys} is missing").format(keys=", ".join(FRICTION_SIZES)))]
+    problems = _of_dry(given, present)
+    if problems:
+        return problems
     if "coefficient" in amounts:
         if len(amounts) > 1:
             what = _("{names} are given together").format(names=", ".join(amounts))
@@ -159,6 +164,23 @@ def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) ->
     if given.get("form") == "plain sum" and (amounts != ["quadratic"] or "link" not in present):
         what = _("the plain sum is used with quadratic friction in a hinge only")
         return [Problem(what, _("remove form, or give quadratic alone"))]
+    return []
+
+
+def _of_dry(given: Mapping[str, Any], present: set[str]) -> list[Problem]:
+    """What sticks needs dry friction of a given size; a belt runs along a guide."""
+    if "static" in present and "value" not in present:
+        return [
+            Problem(_("static is used with the value of dry friction only"), _("give value, or remove it"))
+        ]
+    if "surface_speed" in present and ("guide" not in present or "coefficient" in present):
+        what = _("surface_speed is used with friction of a given size in a guide only")
+        return [Problem(what, _("remove it, or give guide and value"))]
+    kinetic, static = given.get("value"), given.get("static")
+    numbers = [x for x in (kinetic, static) if isinstance(x, int | float) and not isinstance(x, bool)]
+    if len(numbers) == 2 and numbers[1] < numbers[0]:
+        what = _("static ({static:.9g}) is at least the value ({value:.9g}): what sticks holds more")
+        return [Problem(what.format(static=static, value=kinetic), _("exchange or correct them"))]
     return []
 
 
@@ -218,7 +240,20 @@ LEAST, GREATEST = STROKE_ENDS = get_args(StrokeEnd)
 _KEYS = (
     *("kind", "name", "point", "link", "guide", "points", "vector", "axes", "value"),
     *("over", "measured_from", "pressure", "diameter", "table", "stiffness"),
-    *("damping", "viscous", "quadratic", "coefficient", "radius", "fit", "pin", "length", "height", "form"),
+    *(
+        "damping",
+        "viscous",
+        "quadratic",
+        "static",
+        "surface_speed",
+        "coefficient",
+        "radius",
+        "fit",
+        "pin",
+        "length",
+        "height",
+        "form",
+    ),
     *("free_length", "free_angle", "relative_to", "axis", "while_moving"),
 )
 LOAD_DEFAULTS: Mapping[str, str | None] = dict.fromkeys(_KEYS) | {
@@ -507,6 +542,7 @@ class HingeFriction(Load):
     Attributes
     ----------
     value : dry friction: its moment against the motion [N m]
+    static : the greatest moment by which it holds what does not slip [N m]; that of `value` by default
     viscous, quadratic : what grows with the relative speed and with its square [N m s/rad, N m s^2/rad^2]
     form : "virtual work" or "plain sum"
         The plain sum takes the moments of quadratic friction from the driving moment as they are, as a source does.
@@ -518,19 +554,30 @@ class HingeFriction(Load):
     value: Annotated[Amount | None, _dry_friction("torque")] = None
     viscous: Annotated[float | None, _resistance("angular damping")] = None
     quadratic: Annotated[float | None, _resistance("angular quadratic damping")] = None
+    static: Annotated[float | None, _resistance("torque")] = None
     form: Annotated[Form, choice(*FORMS)] = VIRTUAL_WORK
     relative_to: Name = FRAME
     axis: Axis = None
 
+    surface_speed: ClassVar[float] = 0.0
+
 
 class GuideFriction(Load):
-    """Friction of a given size in a guide: dry [N], viscous [N s/m] and quadratic [N s^2/m^2]."""
+    """Friction of a given size in a guide: dry [N], viscous [N s/m] and quadratic [N s^2/m^2].
+
+    Attributes
+    ----------
+    static : the greatest force by which it holds what does not slip [N]; that of `value` by default
+    surface_speed : of the belt against which it rubs, along the guide [m/s]
+    """
 
     kind: Literal["friction"]
     guide: Name
     value: Annotated[Amount | None, _dry_friction("force")] = None
     viscous: Annotated[float | None, _resistance("damping")] = None
     quadratic: Annotated[float | None, _resistance("quadratic damping")] = None
+    static: Annotated[float | None, _resistance("force")] = None
+    surface_speed: Annotated[float, quantity("speed")] = 0.0
 
 
 class BearingFriction(Load):

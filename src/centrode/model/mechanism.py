@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Self, TypeVar
 from pydantic import model_validator
 
 from centrode.model.checks import problems_of_parts
+from centrode.model.contact_checks import contact_problems
 from centrode.model.description import Description
 from centrode.model.drives import Drive
 from centrode.model.gears import Gear
 from centrode.model.links import Frame, Guide, Link, Rolling, Track
 from centrode.model.loads import AnyLoad
+from centrode.model.motors import motor_problems
 from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
@@ -65,6 +67,10 @@ class Mechanism(Description):
     links : mapping of name to Link, in description order
     guides, gears, rolling, drives, loads : tuples
     assembly : Assembly
+    stops, clamps, events : tuples
+        What bounds, holds and watches coordinates of a simulation.
+    motors, controllers : tuples
+        What drives a simulation besides its settings.
     machine : Machine or None
     simulation : Simulation or None
     study : Study
@@ -92,7 +98,7 @@ class Mechanism(Description):
 
     @model_validator(mode="after")
     def _checked_and_placed(self) -> Self:
-        problems = problems_of_parts(self)
+        problems = problems_of_parts(self) or [*contact_problems(self), *motor_problems(self)]
         if problems:
             raise Problems(problems)
         frame, guides = resolve_placement(self)

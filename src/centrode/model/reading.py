@@ -223,27 +223,38 @@ def read_file(path: Path) -> str:
         Missing, not a regular file, not readable, more than `limits.FILE_SIZE` bytes (told before any is
         read), or not UTF-8.
     """
-    where = value_text(path.name or str(path))[1:-1]
+    content = read_content(path, FILE_SIZE)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        what = _("the file is not text in UTF-8 (byte {place})").format(place=error.start)
+        raise InputError(_shown_name(path), what, _("save it as UTF-8")) from None
+
+
+def read_content(path: Path, most: int) -> bytes:
+    """Bytes of a file, at most so many; raises InputError as `read_file` does."""
+    where = _shown_name(path)
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
             raise InputError(where, _("this is not a file"), _("give the path of a file"))
-        if status.st_size <= FILE_SIZE:
+        if status.st_size <= most:
             with path.open("rb") as stream:
-                content = stream.read(FILE_SIZE + 1)
+                content = stream.read(most + 1)
             note(path, status)
-        if status.st_size > FILE_SIZE or len(content) > FILE_SIZE:
+        if status.st_size > most or len(content) > most:
             what = _("the file has {size} bytes, at most {most} are allowed")
-            raise InputError(where, what.format(size=status.st_size, most=FILE_SIZE))
-        return content.decode("utf-8-sig")
+            raise InputError(where, what.format(size=status.st_size, most=most))
+        return content
     except FileNotFoundError:
         raise InputError(where, _("there is no such file"), _("check the path")) from None
-    except UnicodeDecodeError as error:
-        what = _("the file is not text in UTF-8 (byte {place})").format(place=error.start)
-        raise InputError(where, what, _("save it as UTF-8")) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(where, _("the file cannot be read: {reason}").format(reason=reason)) from None
+
+
+def _shown_name(path: Path) -> str:
+    return value_text(path.name or str(path))[1:-1]
 
 
 # What every part of a description is: frozen data that names what it does not know.

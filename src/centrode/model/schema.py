@@ -31,6 +31,7 @@ from centrode.model.cam import (
     Roller,
     Start,
 )
+from centrode.model.contacts import DOINGS, MOST_CONTACTS, Clamp, EventCondition, Stop
 from centrode.model.description import Description
 from centrode.model.drives import Drive
 from centrode.model.explanatory_note import (
@@ -80,6 +81,16 @@ from centrode.model.links import (
     Track,
 )
 from centrode.model.loads import FITS, FORMS, KINDS, OVER, STROKE_ENDS, Load
+from centrode.model.motors import (
+    MOST_CONTROLLERS,
+    MOST_STATES,
+    MOTOR_KINDS,
+    TARGETS,
+    Controller,
+    ControllerState,
+    DriveMotor,
+)
+from centrode.model.motors import MOST_ROWS as MOST_MOTOR_ROWS
 from centrode.model.page_standards import STANDARDS
 from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
@@ -223,6 +234,13 @@ _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
 _HEADING = list_of(quantity_schema("ratio"), 2, 3)
+_MEASURED: Schema = {
+    **dict.fromkeys(("name", "link", "guide"), NAME),
+    "points": _NAMES,
+    "point": NAME,
+    "direction": _HEADING,
+    "relative_to": NAME,
+}
 _MOMENTS = list_of(quantity_schema("inertia"), 3, 3)
 _INERTIA: Schema = {"anyOf": [*quantity_schema("inertia")["anyOf"], _MOMENTS, list_of(_MOMENTS, 3, 3)]}
 _PLACED: Schema = {
@@ -359,6 +377,8 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "damping": quantity_schema("damping"),
         "viscous": quantity_schema("damping"),
         "quadratic": quantity_schema("quadratic damping"),
+        "static": AMOUNT,
+        "surface_speed": quantity_schema("speed"),
         "coefficient": quantity_schema("ratio"),
         "radius": above_zero("length"),
         "fit": {"enum": list(FITS)},
@@ -370,6 +390,19 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "relative_to": NAME,
         "axis": {"anyOf": [NAME, _HEADING]},
         "while_moving": _HEADING,
+    },
+    Stop: {
+        **_MEASURED,
+        **dict.fromkeys(("least", "most"), AMOUNT),
+        "restitution": {"type": "number", "minimum": 0, "maximum": 1},
+        "stiffness": above_zero("stiffness"),
+        "damping": quantity_schema("damping"),
+    },
+    Clamp: {**_MEASURED, "until": AMOUNT},
+    EventCondition: {
+        **_MEASURED,
+        "when": {**TEXT, "description": "a formula in t [s], x and v that passes zero"},
+        "do": {"enum": list(DOINGS)},
     },
     Machine: {
         "mean_speed": above_zero("angular speed"),
@@ -394,6 +427,29 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "breakdown_moment": above_zero("torque"),
         "breakdown_slip": above_zero("ratio"),
         "ratio": above_zero("ratio"),
+    },
+    DriveMotor: {
+        "kind": {"enum": list(MOTOR_KINDS)},
+        "idle_speed": above_zero("angular speed"),
+        "starting_moment": above_zero("torque"),
+        "breakdown_moment": above_zero("torque"),
+        "breakdown_slip": above_zero("ratio"),
+        "ratio": above_zero("ratio"),
+        "drive": NAME,
+        "voltage": quantity_schema("ratio"),
+        "resistance": above_zero("ratio"),
+        "constant": above_zero("ratio"),
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, MOST_MOTOR_ROWS)]},
+    },
+    ControllerState: {"rate": {**TEXT, "description": "a formula"}, "start": quantity_schema("ratio")},
+    Controller: {
+        **dict.fromkeys(("name", "drive", "measures"), NAME),
+        "target": AMOUNT,
+        "of": {"enum": list(TARGETS)},
+        **dict.fromkeys(("proportional", "integral", "derivative"), quantity_schema("ratio")),
+        "value": AMOUNT,
+        "states": table_of({"anyOf": [TEXT, reference_to(ControllerState)]}, MOST_STATES),
+        "most": above_zero("ratio"),
     },
     Simulation: {
         "start": AMOUNT,
@@ -461,6 +517,11 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "drives": list_of(reference_to(Drive), 0, reading.DRIVES),
         "assembly": reference_to(Assembly),
         "loads": list_of(reference_to(Load), 0, reading.LOADS),
+        "stops": list_of(reference_to(Stop), 0, MOST_CONTACTS),
+        "clamps": list_of(reference_to(Clamp), 0, MOST_CONTACTS),
+        "events": list_of(reference_to(EventCondition), 0, MOST_CONTACTS),
+        "motors": list_of(reference_to(DriveMotor), 0, reading.DRIVES),
+        "controllers": list_of(reference_to(Controller), 0, MOST_CONTROLLERS),
         "machine": reference_to(Machine),
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),

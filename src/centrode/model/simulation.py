@@ -199,16 +199,16 @@ class Motor(DescriptionPart):
     @property
     def law(self) -> str:
         """Its moment on the drive [N m] as a formula of the drive's speed v [rad/s]."""
-        times = "" if self.ratio == 1.0 else f"{_spelt(self.ratio)}*"
-        slip = f"(1 - {times}v/{_spelt(self.idle_speed)})"
+        times = "" if self.ratio == 1.0 else f"{spelt(self.ratio)}*"
+        slip = f"(1 - {times}v/{spelt(self.idle_speed)})"
         if self.kind == "linear":
-            return f"{times}{_spelt(self.starting_moment)}*{slip}"
+            return f"{times}{spelt(self.starting_moment)}*{slip}"
         # Kloss: 2 M / (s/k + k/s), written without a pole at s = 0
-        most = _spelt(self.breakdown_slip)
-        return f"{times}2*{_spelt(self.breakdown_moment)}*{most}*{slip}/({slip}^2 + {most}^2)"
+        most = spelt(self.breakdown_slip)
+        return f"{times}2*{spelt(self.breakdown_moment)}*{most}*{slip}/({slip}^2 + {most}^2)"
 
 
-def _spelt(value: float | None) -> str:
+def spelt(value: float | None) -> str:
     """A number as a formula has it: the shortest digits that read back as the same number."""
     return repr(value).removesuffix(".0")
 

@@ -52,17 +52,17 @@ class InitialValueProblem:
     limit: str = ""
     guard: str = ""
 
-    @property
+    @cached_property
     def unknowns(self) -> tuple[str, ...]:
         """Names of what is followed."""
         return tuple(self.rates)
 
-    @property
+    @cached_property
     def fixed(self) -> tuple[str, ...]:
         """Names of what stays as it is during a step."""
         return tuple(name for name in self.closing if name not in self.rates)
 
-    @property
+    @cached_property
     def carried(self) -> tuple[str, ...]:
         """All that is handed from step to step."""
         return (*self.unknowns, *self.fixed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+from collections.abc import Callable
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -24,6 +25,9 @@ class Integrator(Protocol):
 
     def run(self, parameters: Array, state: Array, attempts: int, rows: Array | None = None) -> Array:
         """See `machine_code.integrations.Integration.run`."""
+
+    def attempt_of(self, parameters: Array, before: Array, after: Array) -> Callable[[], None]:
+        """See `machine_code.integrations.Integration.attempt_of`."""
 
 
 def integrator_of(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -85,6 +85,14 @@ class PythonIntegration:
             given = [float(x) for x in (parameters[:, lane] if parameters.shape[1] > 1 else parameters[:, 0])]
             self._run_lane(given, after[:, lane], attempts, rows)
         return after
+
+    def attempt_of(self, parameters: Array, before: Array, after: Array) -> Callable[[], None]:
+        """A function that takes one attempt, as that of `Integration.attempt_of`."""
+
+        def attempt() -> None:
+            after[:] = self.run(parameters, before, 1)
+
+        return attempt
 
     def _run_lane(self, parameters: list[float], state: Array, attempts: int, rows: Array | None) -> None:
         problem = self.problem

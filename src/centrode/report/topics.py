@@ -22,6 +22,8 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
+    if topic.document.on_request and chapter.name not in (study.wishes.chapters or ()):
+        return None
     concerns = topic.concerns if chapter.concerns is None else chapter.concerns
     if study.subject != topic.subject or (concerns is not None and not concerns(study.description)):
         return None

@@ -25,6 +25,7 @@ class MechanismPicture:
     motion : its motion, without batch dimensions
     values : instants [rad, m or s]; each is shown at the nearest sample
     instants : the motion exactly there; None where the samples of the motion have to do
+    captioned : each drawing says which instant it shows
     """
 
     title: Sentence
@@ -32,6 +33,7 @@ class MechanismPicture:
     motion: xarray.Dataset
     values: tuple[float, ...] = ()
     instants: xarray.Dataset | None = None
+    captioned: bool = True
 
 
 @dataclass(frozen=True)

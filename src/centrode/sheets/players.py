@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.walking_wheel import WheelMover
     from centrode.model.mechanism import Mechanism
-    from centrode.sheets.texts import Title
+    from centrode.sheets.texts import Text, Title
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,13 @@ class MotionPlayer:
     ----------
     mechanism, motion : whose motion
     by_time : a slider goes through time, whatever the motion is a function of
+    marks : names and instants [s] that the slider through time marks
     """
 
     mechanism: Mechanism
     motion: xarray.Dataset
     by_time: bool = False
+    marks: tuple[tuple[Text, float], ...] = ()
 
 
 @dataclass(frozen=True)

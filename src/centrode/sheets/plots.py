@@ -170,6 +170,7 @@ class Plot:
     overlay : what the curves are compared with
     sizes_above : of each curve its size where that is greater, on logarithmic scales; plain scales if None
     places : names of single values of the abscissa, and these, in its unit; they are marked in all panels
+    shaded : stretches of the abscissa, in its unit, that are shaded in all panels
     """
 
     title: Sentence
@@ -179,6 +180,7 @@ class Plot:
     overlay: Overlay | None = None
     sizes_above: float | None = None
     places: tuple[tuple[Text, float], ...] = ()
+    shaded: tuple[tuple[float, float], ...] = ()
 
 
 class TraceKind(Enum):

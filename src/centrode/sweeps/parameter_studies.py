@@ -44,6 +44,9 @@ STATUS, REFUSAL = "computed", "refusal"
 
 # each analysis loads what it needs, integrators among it, when it is computed
 _regimes = functools.partial(importlib.import_module, "centrode.dynamics.simulation.steady_state")
+_routes = functools.partial(importlib.import_module, "centrode.dynamics.simulation.routes")
+_motions = functools.partial(importlib.import_module, "centrode.dynamics.simulation.simulate")
+_numbers = functools.partial(importlib.import_module, "centrode.dynamics.simulation.motion_numbers")
 _simulations = functools.partial(importlib.import_module, "centrode.dynamics.simulation.results")
 _speeds = functools.partial(importlib.import_module, "centrode.dynamics.steady_motion.steady")
 _machines = functools.partial(importlib.import_module, "centrode.dynamics.steady_motion.machine")
@@ -54,8 +57,14 @@ _bearings = functools.partial(importlib.import_module, "centrode.dynamics.bearin
 # The numbers of one mechanism.
 
 
-def _extremes_of_simulation(mechanism: Mechanism, _samples: int | None) -> Numbers:
-    """Of the steady regime that a simulation runs up to."""
+def _extremes_of_simulation(mechanism: Mechanism, samples: int | None) -> Numbers:
+    """Of the steady regime that a simulation runs up to; by the equations of all links, of the motion itself."""
+    settings = mechanism.simulation
+    if settings is not None and _routes().equations_for(mechanism, settings) == _routes().MULTIBODY:
+        if samples is not None:
+            settings = settings.model_copy(update={"samples": samples, "at": ()})
+        found: Numbers = _numbers().motion_numbers(_motions().simulate(mechanism, settings))
+        return found
     regime = _regimes().steady_regime(mechanism)
     return {
         "least_speed": (regime.least_speed, "rad/s"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.option_values import MOTION, READ_SPEEDS
+from centrode.topics.option_values import MOTION, READ_PAIRS, READ_SPEEDS, READ_VARIED
 from centrode.topics.topic import (
     ChapterOfTopic,
     ChoiceOption,
@@ -153,6 +153,88 @@ SIMULATION = Topic(
     panel=Panel(
         needs=mark("the description has no [simulation] with a motor or a driving moment"), free=True
     ),
+)
+
+EQUILIBRIUM = Topic(
+    name="equilibrium",
+    compute=Lazily("centrode.dynamics.equilibria.equilibrium", "equilibrium_results"),
+    result=Lazily("centrode.dynamics.equilibria.equilibrium", "EquilibriumResults"),
+    restore=Lazily("centrode.dynamics.equilibria.equilibrium", "results_of_equilibrium"),
+    view=Lazily("centrode.views.equilibrium", "sheet"),
+    concerns=Lazily("centrode.dynamics.equilibria.equilibrium", "has_loads_to_rest"),
+    command=Command(
+        help=mark("Find the equilibria of a mechanism under its loads."),
+        options=(
+            ValueOption(
+                "hold",
+                mark("DRIVE=VALUE"),
+                mark('Drive that is held at a value ("OA=30 deg"); may be repeated.'),
+                several=True,
+                read=READ_PAIRS,
+            ),
+            ValueOption(
+                "vary",
+                mark("PATH=LOW:HIGH"),
+                mark("Follow the equilibria along a number and find its critical values."),
+                several=True,
+                read=READ_VARIED,
+            ),
+        ),
+        samples=False,
+        progress=mark("seeking equilibria, %"),
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("equilibria", mark("Equilibria"), code="ct.equilibrium(mechanism)"),),
+        instants=False,
+        may_be_left_out=True,
+        on_request=True,
+    ),
+    panel=Panel(needs=mark("there is no load and no weight: switch Mass or Load on"), free=True),
+)
+
+MODES = Topic(
+    name="modes",
+    compute=Lazily("centrode.dynamics.equilibria.modes", "modes_results"),
+    result=Lazily("centrode.dynamics.equilibria.modes", "ModesResults"),
+    restore=Lazily("centrode.dynamics.equilibria.modes", "results_of_modes"),
+    view=Lazily("centrode.views.modes", "sheet"),
+    concerns=Lazily("centrode.dynamics.equilibria.modes", "has_masses_at_rest"),
+    command=Command(
+        help=mark("Find natural frequencies, damping and mode shapes."),
+        options=(
+            ValueOption(
+                "equilibrium",
+                mark("N"),
+                mark("Number of the equilibrium, as centrode equilibrium counts them."),
+                int,
+            ),
+            ValueOption(
+                "hold",
+                mark("DRIVE=VALUE"),
+                mark('Drive that is held at a value ("OA=30 deg"); may be repeated.'),
+                several=True,
+                read=READ_PAIRS,
+            ),
+            ValueOption(
+                "speed",
+                mark("DRIVE=V"),
+                mark('Modes about the steady rotation of a drive ("OA=65 rpm").'),
+                several=True,
+                read=READ_PAIRS,
+            ),
+        ),
+        samples=False,
+        animation=Lazily("centrode.animation.modes", "animate_modes"),
+        animation_file="mode-1.gif",
+        animation_help=mark("Also write an animation of every mode."),
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("modes", mark("Natural oscillations"), code="ct.modes(mechanism)"),),
+        instants=False,
+        may_be_left_out=True,
+        on_request=True,
+    ),
+    panel=Panel(needs=mark("modes need masses and loads: switch Mass on"), free=True),
 )
 
 REACTIONS = Topic(

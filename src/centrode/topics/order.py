@@ -28,6 +28,8 @@ COMMANDS = (
     "region",
     "flywheel",
     "simulate",
+    "equilibrium",
+    "modes",
     "balance",
     "tolerances",
     "cam",
@@ -43,6 +45,7 @@ COMMANDS = (
     "draw",
     "sheets",
     "export",
+    "import",
     "chains",
     "examples",
     "schema",
@@ -70,6 +73,8 @@ CHAPTERS = (
     "flywheel",
     "real-motion",
     "simulation",
+    "equilibria",
+    "modes",
     "reactions",
     "force-polygons",
     "balance",
@@ -104,7 +109,10 @@ PARTS: Mapping[str, str] = {
     **dict.fromkeys(("words", "structure"), STRUCTURE),
     **dict.fromkeys(("equations", "derivation", "tables", "plots", "positions", "graphic"), KINEMATICS),
     **dict.fromkeys(("centres", "integration", "rotatability", "axes"), KINEMATICS),
-    **dict.fromkeys(("masses-and-loads", "reduction", "flywheel", "real-motion", "simulation"), DYNAMICS),
+    **dict.fromkeys(
+        ("masses-and-loads", "reduction", "flywheel", "real-motion", "simulation", "equilibria", "modes"),
+        DYNAMICS,
+    ),
     **dict.fromkeys(("reactions", "force-polygons", "balance"), FORCES),
 }
 """Name of a chapter -> the part of an explanatory note that it belongs to; chapters of cams are parts themselves."""

@@ -15,6 +15,8 @@ TOPICS: tuple[Topic, ...] = (
     dynamics.REDUCTION,
     dynamics.FLYWHEEL,
     dynamics.SIMULATION,
+    dynamics.EQUILIBRIUM,
+    dynamics.MODES,
     dynamics.REACTIONS,
     dynamics.BALANCE,
     dynamics.SHAKING,

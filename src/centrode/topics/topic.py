@@ -200,6 +200,7 @@ class InDocuments:
     add_instants : (result, instants=..., **arguments) -> result: a document goes on with a result that it has already
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     may_be_incomplete : so is one whose description lacks what the computation needs
+    on_request : its chapters are in a document only where somebody has chosen them by name
     points : whether the computation takes the points that the document is about
     options : parameters of the computation that somebody may wish for a document, by the names they have there
     """
@@ -212,6 +213,7 @@ class InDocuments:
     add_instants: Lazily | None = None
     may_be_left_out: bool = False
     may_be_incomplete: bool = False
+    on_request: bool = False
     points: bool = False
     chosen_arguments: Mapping[str, Any] = field(default_factory=dict)
     options: tuple[str, ...] = ()

@@ -55,6 +55,15 @@ from centrode.views.energy_balance import (
     occasion_facts,
     works_at_end,
 )
+from centrode.views.motion_events import (
+    KINDS,
+    event_facts,
+    event_marks,
+    event_table,
+    event_text,
+    held_stretches,
+    slider_marks,
+)
 from centrode.views.motion_plots import (
     deal_to_panels,
     great_value,
@@ -78,11 +87,6 @@ MARGIN = 0.04
 SAFETY = 100.0
 """Errors of steps add up, and energies turn over more than once."""
 
-OCCASIONS = {
-    "crossing": Sentence("change point passed"),
-    "near_miss": Sentence("near miss of a change point"),
-    "doubtful": Sentence("change point in doubt"),
-}
 SCHEMES = {"adaptive": ADAPTIVE, "stiff": STIFF}
 IN_CSV = (
     "generalised_coordinate",
@@ -95,6 +99,8 @@ IN_CSV = (
     "joint_force",
     "guide_force",
     "guide_moment",
+    "contact_force",
+    "contact_mode",
 )
 COORDINATES = {
     "drives": ("drive_value", "drive_speed", "drive_acceleration"),
@@ -118,11 +124,16 @@ def multibody_sheet(results: SimulationResults) -> Sheet:
     run = results.simulation
     return Sheet(
         facts=tuple(_facts(results)),
-        tables={"simulation": _table(run)},
+        tables={"simulation": _table(run), **_events(run)},
         datasets={"simulation": run},
         pictures=Deferred(dict(_pictures(results))),
         chapters={"simulation": _chapter(results)},
     )
+
+
+def _events(run: xr.Dataset) -> dict[str, Table]:
+    """The table of events, where there are any of stops, clamps, frictions or conditions."""
+    return {"simulation-events": event_table(run)} if "occasion_part" in run else {}
 
 
 # What is shown of coordinates: those that drives name, else those of the equations.
@@ -184,6 +195,7 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("energies"), energies_at_end(run))
     yield Fact(Sentence("constraints"), _residuals(run))
     yield from _occasions(run)
+    yield from _regime(results)
     if "worst_imbalance" in run.attrs:
         share = Number(float(run.attrs["worst_imbalance"]), digits=".1e")
         yield Fact(
@@ -194,6 +206,33 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
         )
     if results.second is not None:
         yield Fact(Sentence("reduced equation"), _second_route(results))
+
+
+def _regime(results: SimulationResults) -> Iterator[Fact]:
+    """The regime that the motion runs up to, and what is left of departures from it after a period."""
+    periodic = results.periodic
+    if periodic is None:
+        return
+    period = Number(periodic.period, "s", ".9g")
+    left = Number(float(np.max(np.abs(periodic.multipliers), initial=0.0)), digits=".4g")
+    if periodic.indifferent:
+        text = Sentence("comes back every {period}, and so do neighbouring motions", period=period)
+    elif periodic.stable:
+        text = Sentence(
+            "every {period}, of a departure {share} is left after each", period=period, share=left
+        )
+    else:
+        text = Sentence(
+            "every {period}, unstable: a departure becomes {share} times as great", period=period, share=left
+        )
+    yield Fact(Sentence("steady regime"), text)
+    if periodic.turning is not None:
+        yield Fact(Sentence("mean speed"), Number(periodic.mean_speed, "rad/s", unit_fixed=True))
+    time = results.run_up_time
+    if time is not None:
+        yield Fact(
+            Sentence("run-up"), Sentence("within one hundredth of it after {time}", time=Number(time, "s"))
+        )
 
 
 def _scheme(run: xr.Dataset) -> Text:
@@ -207,6 +246,7 @@ def _ending(run: xr.Dataset) -> Text:
     time = Number(float(run["time"].values[-1]) if run.sizes["sample"] else 0.0, "s")
     known = {
         "duration": Sentence("after {time}", time=time),
+        "event": Sentence("at an event, after {time}", time=time),
         "change point": Sentence("at a change point that it does not pass, after {time}", time=time),
         "blow-up": Sentence("beyond all bounds, after {time}", time=time),
         "interrupted": Sentence("interrupted at {time}", time=time),
@@ -234,9 +274,10 @@ def _residuals(run: xr.Dataset) -> Text:
 
 
 def _occasions(run: xr.Dataset) -> Iterator[Fact]:
-    """When it passed a change point, or passed near one."""
+    """What happened: change points that were passed, impacts, what stuck and slipped."""
     times = run["occasion_time"].values.tolist()
-    return occasion_facts(run, OCCASIONS, [Sentence("at {time}", time=Number(time, "s")) for time in times])
+    yield from event_facts(run)
+    yield from occasion_facts(run, KINDS, [event_text(run, number) for number in range(len(times))])
 
 
 def _difference(results: SimulationResults) -> tuple[float, float, str, float]:
@@ -267,14 +308,14 @@ def _table(run: xr.Dataset) -> Table:
     for number, (name, unit) in enumerate(zip(run["drive"].values, drive_units(run), strict=True)):
         columns.append(Column(f"drive_{name}", run["drive_value"].values[:, number], unit))
     for variable in IN_CSV:
-        if variable in run:
+        if variable in run and "sample" in run[variable].dims:
             columns += _columns(run[variable], variable)
     return Table((*columns, status_column(run["status"]), Column("residual", run["residual"].values)))
 
 
 def _columns(values: xr.DataArray, variable: str) -> Iterator[Column]:
     labels = [[str(one) for one in values[name].values] for name in values.dims if name != "sample"]
-    flat = values.values.reshape(len(values), -1)
+    flat = values.values.reshape(len(values), -1).astype(np.float64)
     heads = [variable]
     for names in labels:
         heads = [f"{head}_{name}" for head in heads for name in names]
@@ -316,7 +357,12 @@ def _coordinates_plot(run: xr.Dataset, title: Title) -> Plot:
             for names in deal_to_panels(coordinates.of_unit(unit)):
                 row.append(_coordinate_panel(coordinates, names, order, QUANTITIES[name].symbol, unit))
         rows.append(tuple(row))
-    return Plot(TITLES["simulation-coordinates"], title, _over_time(run), tuple(rows))
+    return _with_events(run, Plot(TITLES["simulation-coordinates"], title, _over_time(run), tuple(rows)))
+
+
+def _with_events(run: xr.Dataset, plot: Plot) -> Plot:
+    """A plot over time with its events marked, and what sticks or is closed shaded."""
+    return replace(plot, places=event_marks(run), shaded=held_stretches(run))
 
 
 def _coordinate_panel(
@@ -364,7 +410,7 @@ def _energies_plot(run: xr.Dataset, title: Title) -> Plot:
     works = [name for name in WORKS if np.any(run[name].values)]
     groups = (("kinetic_energy", "potential_energy"), works, ("energy_residual",))
     rows = tuple((_panel(run, names),) for names in groups if names)
-    return Plot(TITLES["simulation-energies"], title, _over_time(run), rows)
+    return _with_events(run, Plot(TITLES["simulation-energies"], title, _over_time(run), rows))
 
 
 def _panel(run: xr.Dataset, variables: Sequence[str]) -> CurvePanel:
@@ -416,13 +462,23 @@ def _chapter(results: SimulationResults) -> Chapter:
         )
         for name, picture in _pictures(results)
     )
-    player = (MotionPlayer(results.mechanism, run, by_time=True),) if run.sizes["sample"] > 1 else ()
+    player = (
+        (MotionPlayer(results.mechanism, run, by_time=True, marks=slider_marks(run)),)
+        if run.sizes["sample"] > 1
+        else ()
+    )
     sections = (
         Section(NOTHING, (Paragraph(text), equations, FactTable(tuple(_facts(results))), *_checks(results))),
-        Section(Sentence("Over time"), (*player, _course(run))),
+        Section(Sentence("Over time"), (*player, _course(run), *_events_of_chapter(run))),
         Section(NOTHING, figures),
     )
     return Chapter(Sentence("Motion under loads"), sections)
+
+
+def _events_of_chapter(run: xr.Dataset) -> Iterator[Table]:
+    """The events, with impulses and energies."""
+    if "occasion_part" in run:
+        yield replace(event_table(run, caption=True), rows=rows_shown(run.sizes["occasion"]))
 
 
 def _course(run: xr.Dataset) -> Table:

@@ -205,8 +205,8 @@ def test_what_loads_do_is_what_energy_becomes(load: dict[str, object]) -> None:
 @pytest.mark.parametrize(
     "load",
     [
-        {"kind": "friction", "link": "DC", "value": 0.5},
-        {"kind": "force", "point": "C", "vector": [1.0, 0.0], "while_moving": [1.0, 0.0]},
+        {"kind": "friction", "link": "DC", "quadratic": 0.5, "form": "plain sum"},
+        {"kind": "force", "point": "C", "vector": [1.0, 0.0], "while_moving": [0.0, 1.0]},
     ],
 )
 def test_what_jumps_with_the_sense_of_the_motion_is_refused_by_name(load: dict[str, object]) -> None:

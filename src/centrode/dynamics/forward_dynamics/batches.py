@@ -12,8 +12,10 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.forward_dynamics.contacts import contacts_of
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
-from centrode.dynamics.forward_dynamics.free_loads import free_loads_of
+from centrode.dynamics.forward_dynamics.free_loads import dry_frictions_of, free_loads_of
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_position import OPEN
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
@@ -76,10 +78,14 @@ def equations_of_many(free: FreeMotion, numbers: Mapping[str, npt.ArrayLike]) ->
     # how wheels mesh is that of the description
     gearing = dimensions.gearing.with_phases(equations.numbers.gearing.phase)
     masses = masses_of(mechanism, varied, ARRAYS)
-    loads: tuple[LoadAlong, ...] = free_loads_of(mechanism, loads_of(mechanism, masses, varied), ())
+    described = loads_of(mechanism, masses, varied)
+    loads: tuple[LoadAlong, ...] = free_loads_of(mechanism, described, ())
+    contacts = contacts_of(mechanism, dry_frictions_of(mechanism, described))
     # forces of drives are no numbers of the description
     loads += equations.loads[len(loads) :]
-    return replace(equations, numbers=replace(dimensions, gearing=gearing), masses=masses, loads=loads)
+    return replace(
+        equations, numbers=replace(dimensions, gearing=gearing), masses=masses, loads=loads, contacts=contacts
+    )
 
 
 def start_of_many(
@@ -181,8 +187,10 @@ def integrate_many(
     bounds = np.linspace(0, lanes, threads + 1).astype(int)
     rows = np.full((len(instants), len(integration.problem.carried), lanes), np.nan)
     attempts = np.zeros(lanes)
+    # events are found one mechanism after the other
+    waiting = enumerate(instants) if not equations.has_events else ()
     with ThreadPoolExecutor(threads) as pool:
-        for number, instant in enumerate(instants):
+        for number, instant in waiting:
             parameters[CONTROLS.index(END)] = instant
             jobs = [
                 pool.submit(integrator.run, parameters[:, low:high], state[:, low:high], ATTEMPTS)
@@ -265,6 +273,10 @@ def _carried_values(free: FreeMotion, start: InitialState, parameters: Array, la
     closed = evaluate(
         free.integration.problem.of_closing, found | given | {TIME: np.zeros(1), STEP: np.ones(1)}
     )
-    kept = (*names.coordinates, *names.speeds, *names.works)
+    found |= {
+        name: np.full(lanes, start)
+        for name, start in zip(names.states, states_of(free.equations.controls), strict=True)
+    }
+    kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
     rows = [found[name] if name in kept else closed[name] for name in free.integration.problem.carried]
     return np.array([np.broadcast_to(row, lanes) for row in rows], dtype=np.float64)

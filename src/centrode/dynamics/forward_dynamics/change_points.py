@@ -51,6 +51,7 @@ class Detour:
     coefficients : (followed, powers) of ((t - centre) / radius)
     singular : size of the coefficients of negative powers, over that of what changes
     unresolved : size of the last coefficients, in the same measure
+    short : how long before the end of the disc it is left [s]
     """
 
     centre: float
@@ -58,6 +59,7 @@ class Detour:
     coefficients: Array
     singular: float
     unresolved: float
+    short: float = 0.0
 
     @property
     def begin(self) -> float:
@@ -67,7 +69,7 @@ class Detour:
     @property
     def end(self) -> float:
         """Time behind."""
-        return self.centre + self.radius
+        return self.centre + self.radius - self.short
 
     @property
     def is_analytic(self) -> bool:

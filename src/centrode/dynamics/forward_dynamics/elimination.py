@@ -8,7 +8,7 @@ value: what is computed is the same for all values, so it can be traced.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -40,8 +40,11 @@ def times(a: Number, b: Number) -> Number:
     return a if type(b) is float and b == 1.0 else a * b
 
 
-def order_of_least_degree(size: int, pattern: set[tuple[int, int]]) -> list[int]:
-    """Rows in an order in which each has the fewest neighbours when its turn comes; the first of equals first."""
+def order_of_least_degree(size: int, pattern: set[tuple[int, int]], last: Collection[int] = ()) -> list[int]:
+    """Rows in an order in which each has the fewest neighbours when its turn comes; the first of equals first.
+
+    Rows of `last` come behind all others.
+    """
     neighbours: list[set[int]] = [set() for _row in range(size)]
     for i, j in pattern:
         if i != j:
@@ -49,7 +52,7 @@ def order_of_least_degree(size: int, pattern: set[tuple[int, int]]) -> list[int]
             neighbours[j].add(i)
     left, order = set(range(size)), []
     while left:
-        row = min(left, key=lambda k: (len(neighbours[k]), k))
+        row = min(left, key=lambda k: (k in last, len(neighbours[k]), k))
         left.remove(row)
         order.append(row)
         for one in neighbours[row]:
@@ -79,10 +82,16 @@ class Elimination:
     reciprocals: Mapping[int, Number]
 
     @classmethod
-    def of(cls, size: int, entries: Entries, reciprocal: Reciprocal = _reciprocal) -> Elimination:
-        """The elimination of a matrix."""
+    def of(
+        cls,
+        size: int,
+        entries: Entries,
+        reciprocal: Reciprocal = _reciprocal,
+        last: Collection[int] = (),
+    ) -> Elimination:
+        """The elimination of a matrix; rows of `last` have their pivots behind all others."""
         pattern = {key for key, x in entries.items() if not is_zero(x)}
-        order = order_of_least_degree(size, pattern)
+        order = order_of_least_degree(size, pattern, last)
         rest: dict[int, Vector] = {row: {} for row in range(size)}
         for (i, j), x in entries.items():
             if not is_zero(x):

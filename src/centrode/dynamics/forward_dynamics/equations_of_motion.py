@@ -16,10 +16,18 @@ nothing but lambda, by W times what G a + b is.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
+from centrode.dynamics.forward_dynamics.contacts import (
+    FRICTION,
+    Condition,
+    Contact,
+    ContactMode,
+    row_numbers,
+)
+from centrode.dynamics.forward_dynamics.controllers import Control, outputs_of, states_of
 from centrode.dynamics.forward_dynamics.elimination import (
     Elimination,
     Entries,
@@ -36,7 +44,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     rotor_jets,
 )
 from centrode.dynamics.load_coordinates import Coordinate, bodies_of
-from centrode.dynamics.loads import LoadTerm
+from centrode.dynamics.loads import LoadTerm, Situation
 from centrode.dynamics.masses import coordinates_of
 from centrode.dynamics.state import Mass, State
 from centrode.kinematics.path import DrivenBy
@@ -99,6 +107,20 @@ class Shaft:
 
 
 @dataclass(frozen=True)
+class ContactMeasure:
+    """The coordinate of a contact [rad or m], its speed, and the force of its mode along it [N or N m].
+
+    `forwards` and `backwards` are the forces that it would have if it slipped.
+    """
+
+    value: Number
+    speed: Number
+    strength: Number
+    forwards: Number = 0.0
+    backwards: Number = 0.0
+
+
+@dataclass(frozen=True)
 class Terms:
     """The equations at values of the coordinates and their speeds.
 
@@ -110,6 +132,11 @@ class Terms:
     values, speeds, bias : of every closure equation its value, its derivative by time and b
     powers : of every load [W]
     rates : of the value of every kept drive by time
+    measures : of every contact its coordinate, its speed and the force of its mode along it
+    conditions : of every user's event what passes zero
+    outputs, output_powers, state_rates : of controllers
+
+    Rows, values, speeds and bias of contacts follow those of the closures, where modes are given.
     """
 
     size: int
@@ -122,6 +149,21 @@ class Terms:
     powers: Sequence[Number]
     rates: Sequence[Number]
     at: Positions
+    measures: Sequence[ContactMeasure] = ()
+    conditions: Sequence[Number] = ()
+    outputs: Sequence[Number] = ()
+    output_powers: Sequence[Number] = ()
+    state_rates: Sequence[Number] = ()
+
+    def without_contacts(self, equations: int) -> Terms:
+        """The terms with the rows of the closures alone."""
+        return replace(
+            self,
+            rows=self.rows[:equations],
+            values=self.values[:equations],
+            speeds=self.speeds[:equations],
+            bias=self.bias[:equations],
+        )
 
 
 @dataclass(frozen=True)
@@ -139,6 +181,9 @@ class EquationsOfMotion:
     weights : of equations where links have no mass: W; empty where M has an inverse
     dependent : equations of which some are implied by others everywhere
     references : of every equation the size that its diagonal in S has elsewhere; S itself where they are left out
+    contacts : stops, clamps and dry friction
+    conditions : user's events
+    controls : controllers
     """
 
     tree: SpanningTree
@@ -150,6 +195,24 @@ class EquationsOfMotion:
     weights: tuple[Number, ...] = ()
     dependent: frozenset[int] = frozenset()
     references: tuple[Number, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+    controls: tuple[Control, ...] = ()
+
+    @property
+    def has_events(self) -> bool:
+        """Whether something is watched: contacts or conditions."""
+        return bool(self.contacts or self.conditions)
+
+    @property
+    def contact_rows(self) -> tuple[tuple[int, int], ...]:
+        """(row, number of the contact) of the contacts that have a row, behind the closures."""
+        return tuple(enumerate(row_numbers(self.contacts), self.equations))
+
+    @property
+    def flagged(self) -> tuple[int, ...]:
+        """Rows that may be left out: closures that others imply, and those of contacts."""
+        return (*sorted(self.dependent), *(row for row, _number in self.contact_rows))
 
     @property
     def size(self) -> int:
@@ -171,8 +234,19 @@ class EquationsOfMotion:
         depends = self.tree.depends
         return tuple((mass, depends.get(Entity("link", mass.link), frozenset())) for mass in self.masses)
 
-    def terms(self, m: Namespace, values: JointValues, speeds: Sequence[Number], time: Number) -> Terms:
-        """The equations at one state."""
+    def terms(
+        self,
+        m: Namespace,
+        values: JointValues,
+        speeds: Sequence[Number],
+        time: Number,
+        modes: Sequence[ContactMode] | None = None,
+        states: Sequence[Number] | None = None,
+    ) -> Terms:
+        """The equations at one state; with `modes` the contacts have their rows and forces too.
+
+        `states` are those of controllers, that of the start if left out.
+        """
         jets = JetFunctions(m)
         laws = {kept.name: _law_jet(jets, kept, time) for kept in self.kept}
         plain = self.tree.positions(m, self.numbers, values, {k: law.value for k, law in laws.items()})
@@ -182,19 +256,107 @@ class EquationsOfMotion:
         columns = [self._column(jets, values, plain, k, time) for k in range(self.size)]
         mass, force = self._inertia(state, columns)
         powers = self._add_loads(state, columns, force)
+        outputs, output_powers, state_rates = self._add_controls(m, state, columns, force, states)
         rows, residuals = self._closures(jets, in_time, columns)
+        gaps = [jet.coefficients[0] for jet in residuals]
+        drifts = [jet.coefficients[1] for jet in residuals]
+        bias = [times(2.0, jet.coefficients[2]) for jet in residuals]
+        measures: list[ContactMeasure] = []
+        for contact, mode in zip(self.contacts, modes or (), strict=False):
+            slope = contact.coordinate.slope(state)
+            own = self._measure(m, contact, mode, state, contact.coordinate.value(state), slope.value)
+            measures.append(own)
+            row: Vector = {}
+            for k in self._reach(contact.coordinate):
+                add_term(row, k, contact.coordinate.slope(columns[k]).value)
+            for k, x in row.items():
+                add_term(force, k, times(x, own.strength))
+            if contact.has_row:
+                rows.append(row)
+                gaps.append(own.value - mode.held - times(contact.drift, time))
+                drifts.append(own.speed - contact.drift)
+                bias.append(slope.derivative(1))
         return Terms(
             self.size,
             mass,
             force,
             rows,
-            [jet.coefficients[0] for jet in residuals],
-            [jet.coefficients[1] for jet in residuals],
-            [times(2.0, jet.coefficients[2]) for jet in residuals],
+            gaps,
+            drifts,
+            bias,
             powers,
             [law.coefficients[1] for law in laws.values()],
             plain,
+            measures,
+            [] if modes is None else [self._condition(one, state, time) for one in self.conditions],
+            outputs,
+            output_powers,
+            state_rates,
         )
+
+    def _add_controls(
+        self,
+        m: Namespace,
+        state: JointState,
+        columns: Sequence[JointState],
+        force: Vector,
+        states: Sequence[Number] | None,
+    ) -> tuple[list[Number], list[Number], list[Number]]:
+        """Add the forces of controllers; their outputs, powers, and the rates of their states."""
+        if not self.controls:
+            return [], [], []
+        measured = [
+            (0.0, 0.0)
+            if control.measures is None
+            else (control.measures.value(state), control.measures.slope(state).value)
+            for control in self.controls
+        ]
+        known = states_of(self.controls) if states is None else states
+        outputs, rates = outputs_of(m, self.controls, state.time, measured, known)
+        powers: list[Number] = []
+        for control, output in zip(self.controls, outputs, strict=True):
+            if control.drives is None:
+                powers.append(0.0)
+                continue
+            for k in self._reach(control.drives):
+                add_term(force, k, times(control.drives.slope(columns[k]).value, output))
+            powers.append(times(output, control.drives.slope(state).value))
+        return outputs, powers, rates
+
+    def _measure(
+        self,
+        m: Namespace,
+        contact: Contact,
+        mode: ContactMode,
+        state: JointState,
+        x: Number,
+        v: Number,
+    ) -> ContactMeasure:
+        """A contact with the force of its mode: friction that slips, or the push of a compliant stop."""
+        if contact.kind == FRICTION:
+            now = Situation(state.time, state.parameter, x, v - contact.drift, mode.sense, m)
+            forwards, backwards = contact.forces(now)
+            if contact.backwards is None:
+                strength = times(mode.sense, forwards)
+            else:
+                strength = m.where(m.less(0.0, mode.sense), forwards, backwards)
+                strength = m.where(m.less(0.0, m.abs(mode.sense)), strength, 0.0)
+            return ContactMeasure(x, v, strength, forwards, backwards)
+        if contact.has_row or is_zero(mode.active):
+            return ContactMeasure(x, v, 0.0)
+        bounds = [bound for bound in (contact.most, contact.least) if bound is not None]
+        bound = bounds[0] if len(bounds) == 1 else m.where(m.less(0.0, mode.active), *bounds)
+        # it pushes away from the bound and never pulls
+        push = m.max(mode.active * (contact.stiffness * (x - bound) + contact.damping * v), 0.0)
+        return ContactMeasure(x, v, -(mode.active * push))
+
+    def _condition(self, condition: Condition, state: JointState, time: Number) -> Number:
+        x: Number = 0.0
+        v: Number = 0.0
+        if condition.coordinate is not None:
+            x, v = condition.coordinate.value(state), condition.coordinate.slope(state).value
+        given = {"t": time, "x": x, "v": v}
+        return condition.formula(state.m.base, **{name: given[name] for name in given})
 
     def _state(self, jets: JetFunctions, at: Positions, time: Number, order: int) -> JointState:
         mechanism = self.tree.mechanism
@@ -211,7 +373,8 @@ class EquationsOfMotion:
     @cached_property
     def loads_use_drive(self) -> bool:
         """Whether a load depends on the value of the one drive."""
-        return any("q" in load.term.amount.uses for load in self.loads)
+        laws = [contact.kinetic for contact in self.contacts if contact.kinetic is not None]
+        return any("q" in law.uses for law in [*(load.term.amount for load in self.loads), *laws])
 
     def _column(
         self, jets: JetFunctions, values: JointValues, plain: Positions, number: int, time: Number
@@ -285,8 +448,16 @@ class EquationsOfMotion:
 
     # what follows from the terms
 
-    def system(self, m: Namespace, terms: Terms, flags: Flags | None = None) -> MassSystem:
-        """The eliminations of M and S at one state; `flags` say which dependent equations count, else it is decided."""
+    def system(
+        self, m: Namespace, terms: Terms, flags: Flags | None = None, active: Flags | None = None
+    ) -> MassSystem:
+        """The eliminations of M and S at one state.
+
+        Parameters
+        ----------
+        flags : which of the equations that may be left out count; else it is decided by their pivots
+        active : rows of contacts -> whether they are to count, as far as others do not imply them
+        """
         mass, force = dict(terms.mass), dict(terms.force)
         for row, weight, bias in zip(terms.rows, self.weights, terms.bias, strict=False):
             for i, a in row.items():
@@ -302,29 +473,32 @@ class EquationsOfMotion:
                 add_term(schur, (i, j), of_mass.product(one, solved[j]))
         chosen: dict[int, Number] = {}
         own = [schur.get((i, i), 0.0) for i in range(len(solved))]
-        diagonal = self.references or own
+        behind = range(self.equations, len(solved))
+        diagonal = [*(self.references or own[: self.equations]), *(own[i] for i in behind)]
 
         def reciprocal(row: int, pivot: Number) -> Number:
             if is_zero(pivot):
                 # an equation that holds by itself
                 return 0.0
-            if row not in self.dependent:
+            if row not in self.dependent and row not in behind:
                 return 1.0 / pivot
             if flags is None:
                 chosen[row] = m.less(DEPENDENT * diagonal[row], pivot)
+                if row in behind:
+                    chosen[row] = m.both((active or {})[row], chosen[row])
             else:
                 chosen[row] = flags[row]
             # what is left out is divided by one: no infinity comes near
             return m.where(chosen[row], 1.0 / m.where(chosen[row], pivot, 1.0), 0.0)
 
-        of_closures = Elimination.of(len(terms.rows), schur, reciprocal)
-        return MassSystem(of_mass, of_closures, solved, force, diagonal, chosen)
+        of_closures = Elimination.of(len(terms.rows), schur, reciprocal, behind)
+        return MassSystem(of_mass, of_closures, solved, force, diagonal, chosen, self.equations)
 
     def accelerations(
-        self, m: Namespace, terms: Terms, flags: Flags | None = None
+        self, m: Namespace, terms: Terms, flags: Flags | None = None, active: Flags | None = None
     ) -> tuple[list[Number], list[Number], Flags]:
         """Accelerations, the forces of the closures (as they act along their rows), and which equations counted."""
-        system = self.system(m, terms, flags)
+        system = self.system(m, terms, flags, active)
         solution, forces = system.solve(system.force, terms.bias)
         a = [solution.get(k, 0.0) for k in range(self.size)]
         return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
@@ -334,7 +508,13 @@ class EquationsOfMotion:
         return system.solve({}, terms.values)[0]
 
     def consistent_speeds(
-        self, m: Namespace, values: JointValues, speeds: Sequence[Number], time: Number, system: MassSystem
+        self,
+        m: Namespace,
+        values: JointValues,
+        speeds: Sequence[Number],
+        time: Number,
+        system: MassSystem,
+        with_contacts: bool = False,
     ) -> list[Number]:
         """Speeds that keep the closures at closed coordinates, changed least in the measure of M."""
         jets = JetFunctions(m)
@@ -345,6 +525,11 @@ class EquationsOfMotion:
             x for constraint in self.constraints for x in constraint.residual(jets, self.numbers, at)
         ]
         errors = [x.coefficients[1] if isinstance(x, Jet) else 0.0 for x in residuals]
+        if with_contacts:
+            state = self._state(jets, at, time, 1)
+            for _row, number in self.contact_rows:
+                contact = self.contacts[number]
+                errors.append(contact.coordinate.slope(state).value - contact.drift)
         # the elimination is that of the place before: what is left is of the second order
         change, _impulses = system.solve({}, errors)
         return [_plus(x, change.get(k, 0.0)) for k, x in enumerate(speeds)]
@@ -414,7 +599,7 @@ def _law_jet(jets: JetFunctions, kept: KeptDrive, time: Number, order: int = 2) 
 class MassSystem:
     """M and S = G M^-1 G' eliminated, with the rows of G solved forwards.
 
-    `flags` are the conditions under which dependent equations count.
+    `flags` are the conditions under which dependent equations count; rows from `equations` on are those of contacts.
     """
 
     mass: Elimination
@@ -423,12 +608,14 @@ class MassSystem:
     force: Vector
     diagonal: Sequence[Number]
     flags: Mapping[int, Number] = field(default_factory=dict)
+    equations: int = 0
 
     def independence(self, m: Namespace) -> Number:
         """The least root of a pivot over its usual size: zero where closures lose rank, as a distance is."""
         least: Number = 1.0
         for row, pivot in self.closures.pivots.items():
-            if is_zero(pivot):
+            if is_zero(pivot) or row >= self.equations:
+                # a contact that is closed where others hold it already is no change point
                 continue
             share = pivot / self.diagonal[row]
             if row in self.flags:

@@ -7,11 +7,27 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from centrode.dynamics.forward_dynamics.broken_lines import broken_line_of
+from centrode.dynamics.forward_dynamics.contacts import (
+    Contact,
+    SmoothFriction,
+    friction_contact,
+    sensed_contact,
+)
 from centrode.dynamics.forward_dynamics.equations_of_motion import LoadAlong, Shaft
 from centrode.dynamics.load_coordinates import Distance, Slide, Turn
-from centrode.dynamics.loads import AppliedLoad, EnergyClass, LoadDiagram, LoadTable, LoadTerm, Situation
+from centrode.dynamics.loads import (
+    AppliedLoad,
+    EnergyClass,
+    Friction,
+    LoadDiagram,
+    LoadTable,
+    LoadTerm,
+    Situation,
+)
+from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
+from centrode.model.loads import AnyLoad, GuideFriction, HingeFriction
 from centrode.model.mechanism import Drive, Mechanism
 
 Number: TypeAlias = Any
@@ -54,15 +70,60 @@ class DriveLaw:
 def free_loads_of(
     mechanism: Mechanism, loads: Sequence[AppliedLoad], efforts: Sequence[DriveEffort]
 ) -> tuple[LoadAlong, ...]:
-    """Loads as they act on a free motion, then the forces of drives.
+    """Loads as they act on a free motion, then the forces of drives; dry friction is left to `dry_frictions_of`.
 
-    Raises NotComputedYet for dry friction, loads that act in one sense of a motion alone, and plain sums.
+    Raises NotComputedYet for loads that act in one sense of a motion alone, and plain sums.
     """
-    found = [LoadAlong(load.label, _without_branches(load, term)) for load in loads for term in load.efforts]
+    described = dict(zip((load.label for load in loads), mechanism.loads, strict=False))
+    found = []
+    for load in loads:
+        for term in load.efforts:
+            if has_sense(term):
+                continue
+            if is_dry(term):
+                term = _smooth_part(term, described[load.label])
+                if term is None:
+                    continue
+            found.append(LoadAlong(load.label, _without_branches(load, term)))
     for effort in efforts:
         drive = next(one for one in mechanism.drives if one.id == effort.drive)
         law = DriveLaw(effort.law, effort.uses - {"q"})
         found.append(LoadAlong(f"drive {drive.id}", LoadTerm(coordinate_of_drive(mechanism, drive), law)))  # type: ignore[arg-type]
+    return tuple(found)
+
+
+def is_dry(term: LoadTerm) -> bool:
+    """Whether an effort is friction with a dry part."""
+    return isinstance(term.amount, Friction) and term.amount.sensed
+
+
+def has_sense(term: LoadTerm) -> bool:
+    """Whether an effort has a force for each sense of a motion, friction aside."""
+    of_columns = isinstance(term.amount, LoadDiagram) and term.amount.sensed
+    return term.works is None and (term.gate is not None or of_columns)
+
+
+def _smooth_part(term: LoadTerm, load: AnyLoad) -> LoadTerm | None:
+    """What of a friction grows with the speed, against the belt if there is one; None where nothing does."""
+    law = term.amount
+    assert isinstance(law, Friction)
+    drift = load.surface_speed if isinstance(load, GuideFriction) else 0.0
+    if is_none(law.viscous) and is_none(law.quadratic):
+        return None
+    return replace(term, amount=SmoothFriction(law.viscous, law.quadratic, drift))  # type: ignore[arg-type]
+
+
+def dry_frictions_of(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[Contact, ...]:
+    """The dry parts of frictions, and loads with a force for each sense, as contacts, in the order of the loads."""
+    found = []
+    for load, described in zip(loads, mechanism.loads, strict=False):
+        for term in load.efforts:
+            if is_dry(term):
+                assert isinstance(term.amount, Friction)
+                assert isinstance(described, HingeFriction | GuideFriction)
+                found.append(friction_contact(described, load.label, term.amount, term.coordinate))
+            elif has_sense(term):
+                found.append(sensed_contact(term, load.label, load.where))
     return tuple(found)
 
 
@@ -91,16 +152,8 @@ def shafts_of(mechanism: Mechanism) -> tuple[Shaft, ...]:
 def _without_branches(load: AppliedLoad, term: LoadTerm) -> LoadTerm:
     amount = term.amount
     reason = None
-    if term.gate is not None:
-        reason = _("a load that acts while a point moves in one sense")
-    elif term.works is not None:
+    if term.works is not None:
         reason = _("a plain sum of friction")
-    elif amount.sensed:
-        reason = (
-            _("a diagram with a column for each sense of motion")
-            if isinstance(amount, LoadDiagram)
-            else _("dry friction")
-        )
     if reason is not None:
         what = _("{load} is not computed by all coordinates").format(load=reason)
         raise NotComputedYet(

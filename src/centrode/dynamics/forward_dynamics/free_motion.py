@@ -11,8 +11,16 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.forward_dynamics.contacts import conditions_of, contacts_of
+from centrode.dynamics.forward_dynamics.controllers import controls_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of, shafts_of
+from centrode.dynamics.forward_dynamics.free_loads import (
+    DriveEffort,
+    coordinate_of_drive,
+    dry_frictions_of,
+    free_loads_of,
+    shafts_of,
+)
 from centrode.dynamics.forward_dynamics.initial_position import InitialPosition, position_of_description
 from centrode.dynamics.forward_dynamics.initial_state import (
     InitialState,
@@ -177,12 +185,23 @@ class FreeMotion:
             what = _("there is no scheme {name} for all coordinates").format(name=scheme)
             raise InputError("[simulation] scheme", what, _("adaptive or stiff"))
         integration = self.integration
+        if scheme == STIFF and self.equations.has_events:
+            what = _("events are found by the adaptive scheme alone")
+            raise InputError("[simulation] scheme", what, _('write scheme = "adaptive"'))
         take = integration.explicit_steps if scheme == ADAPTIVE else integration.implicit_steps
         steps = take(start, duration, tolerance, executor, progress)
         reached = float(steps.rows[0, -1])
         times = times[times <= reached] if steps.ended != DURATION else np.minimum(times, reached)
         states = integration.states_at(steps, times, executor)
-        return trajectory_of(self.equations, steps, times, states, scheme, choose_executor(executor))
+        return trajectory_of(
+            self.equations,
+            integration.problem.carried,
+            steps,
+            times,
+            states,
+            scheme,
+            choose_executor(executor),
+        )
 
 
 def free_motion_of(
@@ -200,7 +219,7 @@ def free_motion_of(
     InputError
         It does not close, nothing has a mass, or a motion is possible that moves none.
     NotComputedYet
-        Dry friction and whatever jumps with the sense of a motion; kept drives whose law is a table.
+        What jumps with the sense of a motion, dry friction aside; kept drives whose law is a table.
     """
     tree = spanning_tree_of(mechanism)
     position = position_of_description(mechanism, tree)
@@ -208,7 +227,15 @@ def free_motion_of(
     loads = free_loads_of(mechanism, burden.loads, efforts)
     kept = kept_drives_of(mechanism, float(position.numbers.scale), keeps)
     equations = EquationsOfMotion(
-        tree, position.numbers, burden.masses, loads, kept, shafts=shafts_of(mechanism)
+        tree,
+        position.numbers,
+        burden.masses,
+        loads,
+        kept,
+        shafts=shafts_of(mechanism),
+        contacts=contacts_of(mechanism, dry_frictions_of(mechanism, burden.loads)),
+        conditions=conditions_of(mechanism),
+        controls=controls_of(mechanism, coordinate_of_drive),
     )
     equations, rank = solvable_equations(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)

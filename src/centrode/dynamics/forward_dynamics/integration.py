@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from importlib import import_module
 from math import inf, isfinite
@@ -13,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
@@ -26,12 +28,14 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
     LIMIT,
     LOOKED,
     NEVER,
+    PASSED,
     MotionNames,
     motion_problem,
 )
 from centrode.dynamics.forward_dynamics.motion_steps import (
     BLOW_UP,
     CHANGE_POINT,
+    CONDITION_ENDS,
     CROSSING,
     DURATION,
     NEAR_MISS,
@@ -50,6 +54,7 @@ from centrode.numerics.initial_value_problems import (
     InitialValueProblem,
 )
 from centrode.numerics.integrators import Integrator, integrator_of
+from centrode.numerics.python_functions import Function
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 
@@ -103,10 +108,22 @@ class MotionIntegration:
         """The initial value problem, its numbers being parameters."""
         return motion_problem(self.variables.equations, self.variables.parameters)
 
+    @cached_property
+    def contact_function(self) -> Function:
+        """What contacts feel at one state; see `event_steps.contact_function`."""
+        return contact_function(self.variables.equations, self.names, self.problem)
+
+    @cached_property
+    def closing_function(self) -> Function:
+        """What a state ends with behind an event, on plain numbers."""
+        return PythonIntegration(self.problem).closing
+
     def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
         """The same problem for equations of the same structure with other numbers."""
         other = MotionIntegration(equations)
-        for name in ("variables", "names", "problem", "_half_circles"):
+        shared = ("variables", "names", "problem", "_half_circles")
+        shared += ("contact_function", "closing_function") if self.equations.has_events else ()
+        for name in shared:
             other.__dict__[name] = getattr(self, name)
         return other
 
@@ -153,6 +170,7 @@ class MotionIntegration:
         found = dict.fromkeys(self.problem.carried, 0.0)
         found |= dict(zip(names.coordinates, start.coordinates, strict=True))
         found |= dict(zip(names.speeds, start.speeds, strict=True))
+        found |= dict(zip(names.states, states_of(self.equations.controls), strict=True))
         closing = evaluate(
             self.problem.of_closing,
             found
@@ -160,7 +178,7 @@ class MotionIntegration:
             | dict(zip(self.problem.parameters, self.parameters(1.0, 1.0, 1.0)[:, 0], strict=True)),
         )
         # rotors and flags are those of the start; the start itself is closed already
-        kept = (*names.coordinates, *names.speeds, *names.works)
+        kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
         return np.array(
             [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
         )
@@ -185,30 +203,53 @@ class MotionIntegration:
         first = min(duration, 0.01 / rate)
         state = np.concatenate([[0.0, first, 0.0, 0.0], self.carried_values(start)])[:, None]
         kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
-        attempts, steps, room = 0, 0, ROWS
+        watch = EventWatch(self, take, parameters, rate) if self.equations.has_events else None
+        if watch is not None:
+            state = watch.begin(state)
+            kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
+        attempts, steps, room, rows = 0, 0, ROWS, np.empty((0, 0))
         ended, cause = DURATION, None
         guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
         events: list[Event] = []
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
-            rows = np.empty((room, len(kept[0][0])))
+            if len(rows) != room:
+                rows = np.empty((room, len(kept[0][0])))
+            pause = duration if watch is None else watch.next_release(float(state[0, 0]), duration)
+            parameters[CONTROLS.index(END), 0] = pause
             state = take.run(parameters, state, ATTEMPTS, rows)
             attempts += int(state[2, 0])
             written = int(state[3, 0])
             steps += written
-            kept.append(rows[:written])
+            kept.append(rows[:written].copy())
             time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
                 progress(time)
+            if watch is not None and state[guard, 0] >= PASSED:
+                # the step that went beyond the event is taken again
+                kept[-1] = kept[-1][:-1]
+                before = next(some[-1] for some in reversed(kept) if len(some))
+                row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
+                kept += [row[None], np.concatenate([state[:1, 0], state[HEADER:, 0]])[None]]
+                if ends:
+                    ended = CONDITION_ENDS
+                    break
+                continue
+            if watch is not None and time >= pause and pause < duration:
+                state = watch.release(state, time)
+                kept.append(np.concatenate([state[:1, 0], state[HEADER:, 0]])[None])
+                continue
             if time >= duration:
                 break
             if guard is not None and state[guard, 0] != 0.0:
                 back = self._step_back(take, parameters, state, kept, detours, rate)
-                passed = self._pass_change_point(parameters, state if back is None else back[0], tolerance)
+                passed = self._pass_change_point(
+                    parameters, state if back is None else back[0], tolerance, watch
+                )
                 if back is not None and not isinstance(passed, str) and passed[0] is not None:
                     state, kept = back
                 elif back is not None:
-                    passed = self._pass_change_point(parameters, state, tolerance)
+                    passed = self._pass_change_point(parameters, state, tolerance, watch)
                 if isinstance(passed, str):
                     ended, cause = CHANGE_POINT, passed
                     break
@@ -240,6 +281,10 @@ class MotionIntegration:
                 ended, cause = STEP_SIZE, _("more than {count} steps").format(count=MOST_STEPS)
                 break
             room = min(4 * room, MOST_ROWS)
+        if watch is not None:
+            reached = float(kept[-1][-1, 0]) if len(kept[-1]) else duration
+            told = [one for one in watch.events if one.time <= reached]
+            events = sorted([*events, *told], key=lambda one: one.time)
         return MotionSteps(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
 
     def implicit_steps(
@@ -267,6 +312,7 @@ class MotionIntegration:
             *range(*names.part(names.speeds).indices(count)),
         ]
         own += range(*names.part(names.works).indices(count))
+        own += range(*names.part(names.states).indices(count))
 
         def whole(y: Array) -> list[float]:
             values = carried.copy()
@@ -373,7 +419,11 @@ class MotionIntegration:
         return before, rows
 
     def _pass_change_point(
-        self, parameters: Array, state: Array, tolerance: float
+        self,
+        parameters: Array,
+        state: Array,
+        tolerance: float,
+        watch: EventWatch | None = None,
     ) -> tuple[Detour | None, Event | None] | str:
         """Pass the change point ahead, if it is one; the state is that behind it then.
 
@@ -396,6 +446,13 @@ class MotionIntegration:
             state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
             return None, Event(detour.centre, NEAR_MISS, near) if near < DOUBTFUL else None
         count = len(self.problem.unknowns)
+        if watch is not None:
+            clear = watch.clear_until(detour, state[HEADER:, 0])
+            if clear is None:
+                # something happens before the change point is reached: it is integrated straight up to there
+                state[row[LOOKED], 0], state[row[GUARD], 0] = 0.5 * near, 0.0
+                return None, None
+            detour = replace(detour, short=detour.end - clear)
         before = self._energy(state[HEADER:, 0], time)
         landed = detour.at(np.array([detour.end]))[:, 0]
         values = dict(zip(carried, state[HEADER:, 0], strict=True)) | dict(

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
+from centrode.dynamics.forward_dynamics.contacts import Contact, SmoothFriction
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, LoadAlong
 from centrode.dynamics.load_coordinates import Component
 from centrode.dynamics.loads import (
@@ -37,6 +38,25 @@ def map_equations(equations: EquationsOfMotion, function: Function) -> Equations
         shafts=tuple(replace(shaft, inertia=function(shaft.inertia)) for shaft in equations.shafts),
         weights=tuple(map(function, equations.weights)),
         references=tuple(map(function, equations.references)),
+        contacts=tuple(_map_contact(contact, function) for contact in equations.contacts),
+    )
+
+
+def _map_contact(contact: Contact, function: Function) -> Contact:
+    def known(number: Number | None) -> Number | None:
+        # a bound at zero is a number like any other: it is not part of the structure
+        return None if number is None else function(number)
+
+    return replace(
+        contact,
+        least=known(contact.least),
+        most=known(contact.most),
+        stiffness=function(contact.stiffness),
+        damping=function(contact.damping),
+        kinetic=None if contact.kinetic is None else _map_law(contact.kinetic, function),
+        backwards=None if contact.backwards is None else _map_law(contact.backwards, function),
+        static=known(contact.static),
+        drift=function(contact.drift),
     )
 
 
@@ -98,6 +118,13 @@ def _map_law(law: LoadLaw | BrokenLine, function: Function) -> Any:
             return replace(law, stiffness=function(law.stiffness), free=function(law.free))
         case Damper():
             return replace(law, damping=function(law.damping))
+        case SmoothFriction():
+            return replace(
+                law,
+                viscous=function(law.viscous),
+                quadratic=function(law.quadratic),
+                drift=function(law.drift),
+            )
         case Friction():
             return replace(law, viscous=function(law.viscous), quadratic=function(law.quadratic))
         case _:

@@ -8,13 +8,22 @@ masses.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
-from centrode.dynamics.forward_dynamics.elimination import is_zero
+from centrode.dynamics.forward_dynamics.contacts import (
+    AT_LEAST,
+    AT_MOST,
+    FRICTION,
+    STOP,
+    ContactMode,
+)
+from centrode.dynamics.forward_dynamics.controllers import states_of
+from centrode.dynamics.forward_dynamics.elimination import is_zero, times
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Flags
 from centrode.dynamics.forward_dynamics.spanning_tree import JointValues, Rotor
+from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.initial_value_problems import (
@@ -44,6 +53,13 @@ NEAR, FAR = 0.25, 0.4
 less
 than this until they lose rank."""
 NEVER = 1e300
+CONDITION = "condition"
+PASSED = 2.0
+"""Value of what stops the steps where a guard has passed zero; added to that of a change point."""
+LEAST_GAP = 1e-15
+"""Share of the greatest length that two digits of a place are apart."""
+ROUNDING = 1e-13
+"""Share of lengths, speeds and accelerations below which a guard is taken for zero."""
 CONTROLS = (END, SMALLEST, TOLERANCE, RATE, LENGTH)
 """Parameters of a lane: its end, its least step, the error of a step, what speeds and lengths are compared with."""
 
@@ -58,6 +74,12 @@ class MotionNames:
     speeds: tuple[str, ...]
     works: tuple[str, ...]
     flags: tuple[str, ...]
+    active: tuple[str, ...] = ()
+    senses: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+    guards: tuple[str, ...] = ()
+    sides: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, equations: EquationsOfMotion) -> MotionNames:
@@ -68,14 +90,40 @@ class MotionNames:
             tuple(f"cosine {k}" for k in angles),
             tuple(f"sine {k}" for k in angles),
             tuple(f"speed {k}" for k in size),
-            tuple(f"work {k}" for k in range(len(worked_loads(equations)) + len(equations.kept))),
-            tuple(f"counts {row}" for row in sorted(equations.dependent)),
+            tuple(
+                f"work {k}"
+                for k in range(
+                    len(worked_loads(equations))
+                    + len(equations.kept)
+                    + len(equations.controls)
+                    + len(equations.contacts)
+                )
+            ),
+            tuple(f"counts {row}" for row in equations.flagged),
+            tuple(f"active {k}" for k in range(len(equations.contacts))),
+            tuple(f"sense {k}" for k in range(len(equations.contacts))),
+            tuple(f"held {k}" for k in range(len(equations.contacts))),
+            tuple(f"guard {k}" for k in range(len(guards_of(equations)))),
+            tuple(f"side {k}" for k in range(len(equations.conditions))),
+            tuple(f"state {k}" for k in range(len(states_of(equations.controls)))),
         )
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """What stays as it is between events."""
+        return (*self.active, *self.senses, *self.held, *self.sides)
 
     @property
     def unknowns(self) -> tuple[str, ...]:
         """All that is followed, in order."""
-        return (*self.coordinates, *self.cosines, *self.sines, *self.speeds, *self.works)
+        return (
+            *self.coordinates,
+            *self.cosines,
+            *self.sines,
+            *self.speeds,
+            *self.works,
+            *self.states,
+        )
 
     def part(self, names: Sequence[str]) -> slice:
         """Where some of them stand in a row that has all of them."""
@@ -92,6 +140,41 @@ def worked_loads(equations: EquationsOfMotion) -> tuple[int, ...]:
     )
 
 
+class Guard(NamedTuple):
+    """What passes zero downwards at an event.
+
+    Attributes
+    ----------
+    kind : "stop", "friction" or "condition"
+    number : of the contact or the condition
+    bound : -1 or +1 of a stop
+    """
+
+    kind: str
+    number: int
+    bound: float = 0.0
+
+
+def guards_of(equations: EquationsOfMotion) -> tuple[Guard, ...]:
+    """Guards of a motion: one for each bound of a stop, for each friction and each condition."""
+    found = []
+    for k, contact in enumerate(equations.contacts):
+        if contact.kind == FRICTION:
+            found.append(Guard(FRICTION, k))
+        for bound, value in ((AT_LEAST, contact.least), (AT_MOST, contact.most)):
+            if value is not None:
+                found.append(Guard(STOP, k, bound))
+    return (*found, *(Guard(CONDITION, k) for k in range(len(equations.conditions))))
+
+
+def modes_of(names: MotionNames, get: Callable[[str], Number]) -> list[ContactMode] | None:
+    """Modes of all contacts by a function of their names; None where nothing is watched."""
+    if not (names.active or names.sides):
+        return None
+    rows = zip(names.active, names.senses, names.held, strict=True)
+    return [ContactMode(*map(get, row)) for row in rows]
+
+
 @dataclass(frozen=True)
 class Rates:
     """Derivatives by time at one state; `flags` say which dependent equations counted."""
@@ -99,6 +182,7 @@ class Rates:
     accelerations: Sequence[Number]
     powers: Sequence[Number]
     flags: Flags
+    states: Sequence[Number] = ()
 
 
 def rates_of(
@@ -108,15 +192,23 @@ def rates_of(
     speeds: Sequence[Number],
     time: Number,
     flags: Flags | None = None,
+    modes: Sequence[ContactMode] | None = None,
+    states: Sequence[Number] | None = None,
 ) -> Rates:
     """Accelerations and powers."""
-    terms = equations.terms(m, values, speeds, time)
+    terms = equations.terms(m, values, speeds, time, modes, states)
     accelerations, forces, chosen = equations.accelerations(m, terms, flags)
-    kept = forces[len(forces) - len(equations.kept) :] if equations.kept else []
+    kept = forces[equations.equations - len(equations.kept) : equations.equations]
     powers = [terms.powers[k] for k in worked_loads(equations)]
     # a drive's constraint is its value less the law: what moves the mechanism acts against the row
     powers += [-(force * rate) for force, rate in zip(kept, terms.rates, strict=True)]
-    return Rates(accelerations, powers, chosen)
+    powers += terms.output_powers
+    behind = dict((number, forces[row]) for row, number in equations.contact_rows if row < len(forces))
+    for number, (contact, one) in enumerate(zip(equations.contacts, terms.measures, strict=False)):
+        # a belt works on what sticks to it; stops and clamps do not move
+        carried = times(-behind[number], contact.drift) if contact.kind == FRICTION else 0.0
+        powers.append(times(one.strength, one.speed) + carried)
+    return Rates(accelerations, powers, chosen, terms.state_rates)
 
 
 def turned_rotor(rotor: Rotor, by: Number) -> Rotor:
@@ -137,17 +229,22 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
         k: (variable(cosine), variable(sine))
         for k, cosine, sine in zip(tree.angles, names.cosines, names.sines, strict=True)
     }
-    rows = sorted(equations.dependent)
+    rows = equations.flagged
+    modes = modes_of(names, variable)
+    states = [variable(name) for name in names.states]
     flags = {row: m.less(0.5, variable(name)) for row, name in zip(rows, names.flags, strict=True)}
     time = variable(TIME)
-    found = rates_of(m, equations, JointValues(coordinates, rotors), speeds, time, flags or None)
+    found = rates_of(
+        m, equations, JointValues(coordinates, rotors), speeds, time, flags or None, modes, states
+    )
     rates: dict[str, Number] = dict(zip(names.coordinates, speeds, strict=True))
     rates |= {name: -(speeds[k] * rotors[k][1]) for k, name in zip(tree.angles, names.cosines, strict=True)}
     rates |= {name: speeds[k] * rotors[k][0] for k, name in zip(tree.angles, names.sines, strict=True)}
     rates |= dict(zip(names.speeds, found.accelerations, strict=True))
     rates |= dict(zip(names.works, found.powers, strict=True))
+    rates |= dict(zip(names.states, found.states, strict=True))
     closing = _closing(equations, names, coordinates, speeds, time)
-    watched = GUARD in closing
+    watched = LIMIT in closing
     early = (*CONTROLS, *parameters)
     turned = [(as_node(m.cos(coordinates[k])), as_node(m.sin(coordinates[k]))) for k in tree.angles]
     return InitialValueProblem(
@@ -156,7 +253,7 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
         without_unit_squares(closing, turned, early),
         as_node(_error(equations, names)),
         LIMIT if watched else "",
-        GUARD if watched else "",
+        GUARD if GUARD in closing else "",
     )
 
 
@@ -172,23 +269,104 @@ def _closing(
     q, w = list(coordinates), list(speeds)
     rotors = dict(values.rotors)
     counted: dict[str, Number] = {}
-    if equations.equations:
-        terms = equations.terms(m, values, speeds, time)
-        system = equations.system(m, terms)
+    modes = modes_of(names, variable)
+    if equations.equations or equations.contact_rows:
+        active = {
+            row: m.less(0.5, m.abs(variable(names.active[number]))) for row, number in equations.contact_rows
+        }
+        states = [variable(name) for name in names.states]
+        terms = equations.terms(m, values, speeds, time, modes, states)
+        system = equations.system(m, terms, active=active)
         shift = equations.shift_to_close(terms, system)
         q = [x if is_zero(shift.get(k, 0.0)) else x + shift[k] for k, x in enumerate(coordinates)]
         rotors = {k: turned_rotor(rotors[k], shift.get(k, 0.0)) for k in tree.angles}
-        w = equations.consistent_speeds(m, JointValues(q, rotors), speeds, time, system)
+        w = equations.consistent_speeds(
+            m, JointValues(q, rotors), speeds, time, system, bool(equations.contacts)
+        )
         counted = {
             name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
-            for row, name in zip(sorted(equations.dependent), names.flags, strict=True)
+            for row, name in zip(equations.flagged, names.flags, strict=True)
         }
         counted |= _watch(equations, system.independence(m), w)
+    if equations.has_events:
+        chosen = {
+            row: m.less(0.5, counted[name])
+            for row, name in zip(equations.flagged, names.flags, strict=True)
+            if not isinstance(counted[name], float)
+        }
+        counted |= {name: variable(name) for name in names.modes}
+        watched = _guards(equations, names, JointValues(q, rotors), w, time, chosen, modes or [])
+        counted |= watched[0]
+        counted[GUARD] = counted.get(GUARD, 0.0) + (
+            0.0 if watched[1] is None else m.where(watched[1], PASSED, 0.0)
+        )
     closed: dict[str, Number] = dict(zip(names.coordinates, q, strict=True))
     closed |= {name: rotors[k][0] for k, name in zip(tree.angles, names.cosines, strict=True)}
     closed |= {name: rotors[k][1] for k, name in zip(tree.angles, names.sines, strict=True)}
     closed |= dict(zip(names.speeds, w, strict=True))
     return {name: as_node(x) for name, x in (closed | counted).items()}
+
+
+def _guards(
+    equations: EquationsOfMotion,
+    names: MotionNames,
+    values: JointValues,
+    speeds: Sequence[Number],
+    time: Number,
+    flags: Flags,
+    modes: Sequence[ContactMode],
+) -> tuple[dict[str, Number], Number]:
+    """Values of all guards behind a step, and whether one has passed zero."""
+    m = EXPRESSIONS
+    states = [variable(name) for name in names.states]
+    terms = equations.terms(m, values, speeds, time, modes, states)
+    system = equations.system(m, terms, flags)
+    _solution, forces = system.solve(system.force, terms.bias)
+    rows = {number: row for row, number in equations.contact_rows}
+    found: dict[str, Number] = {}
+    passed: Number = None
+    for name, guard in zip(names.guards, guards_of(equations), strict=True):
+        floor: Number = 0.0
+        if guard.kind == CONDITION:
+            value, floor = variable(names.sides[guard.number]) * terms.conditions[guard.number], ROUNDING
+        else:
+            contact, mode = equations.contacts[guard.number], modes[guard.number]
+            one = terms.measures[guard.number]
+            angular = isinstance(contact.coordinate, Turn)
+            unit = 1.0 if angular else variable(LENGTH)
+            force, weak = 0.0, 0.0
+            if guard.number in rows:
+                row = rows[guard.number]
+                force = forces.get(row, 0.0)
+                # what the inertia along the row would ask for at accelerations of rounding
+                size = system.diagonal[row]
+                weak = ROUNDING * unit * variable(RATE) ** 2 / m.where(m.less(0.0, size), size, 1.0)
+            if guard.kind == FRICTION:
+                slips = mode.sense * (one.speed - contact.drift)
+                most = m.max(one.forwards, one.backwards)
+                least = m.min(one.forwards, one.backwards)
+                if contact.static is not None:
+                    most, least = m.max(contact.static, most), m.min(-contact.static, least)
+                sticks = m.less(0.5, mode.active)
+                # what holds acts against its row
+                value = m.where(sticks, m.min(most + force, -force - least), slips)
+                floor = m.where(sticks, weak, ROUNDING * unit * variable(RATE))
+            else:
+                bound = contact.least if guard.bound < 0.0 else contact.most
+                gap = guard.bound * (bound - one.value)
+                here = m.less(0.5, guard.bound * mode.active)
+                there = m.less(0.5, -guard.bound * mode.active)
+                if contact.has_row:
+                    value = m.where(here, guard.bound * force, m.where(there, unit, gap))
+                    floor = m.where(here, weak, LEAST_GAP * unit)
+                else:
+                    value = m.where(here, -gap, m.where(there, unit, gap))
+                    floor = LEAST_GAP * unit
+        below = m.less(value + floor, 0.0)
+        # below zero by rounding alone is zero
+        found[name] = m.where(below, value, m.max(value, 0.0))
+        passed = below if passed is None else m.either(passed, below)
+    return found, passed
 
 
 def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[Number]) -> dict[str, Number]:
@@ -231,7 +409,13 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
                 inverse = 1.0 / scale
                 parts = [part * inverse for part in parts]
             fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
+    for name in names.states:
+        # a state has no unit to be compared with: its own size, or one
+        reach = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
+        parts = [variable(prefix + name) / reach for prefix in (OF_FIFTH, OF_THIRD)]
+        fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     together = fifth + 0.01 * third
-    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(2 * equations.size))
+    count = 2 * equations.size + len(names.states)
+    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(count))
     # nothing erred, or something has no value
     return m.where(m.less(0.0, together), size, together) / (SHARE * variable(TOLERANCE))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import nan
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -15,7 +16,16 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 CROSSING, NEAR_MISS = "crossing", "near miss"
 """Kinds of events: a change point was passed, or the closures only came near to losing rank."""
+IMPACT, RESTS, CLOSES, OPENS = "impact", "comes to rest", "closes", "opens"
+TOUCHES, LEAVES, LETS_GO = "touches", "leaves", "lets go"
+STICKS, SLIPS, CONDITION_MET = "sticks", "slips", "condition"
+"""Kinds of events of stops, clamps, frictions and of a user's conditions."""
+KINDS = (
+    *(CROSSING, NEAR_MISS, IMPACT, RESTS, CLOSES, OPENS, TOUCHES, LEAVES, LETS_GO),
+    *(STICKS, SLIPS, CONDITION_MET),
+)
 DURATION, BLOW_UP, STEP_SIZE, CHANGE_POINT = "duration", "blow-up", "step size", "change point"
+CONDITION_ENDS = "event"
 """Ends of a motion."""
 
 
@@ -25,13 +35,18 @@ class Event(NamedTuple):
     Attributes
     ----------
     time : [s]
-    kind : `CROSSING` or `NEAR_MISS`
+    kind : one of `KINDS`
     detail : change of the energy [J] at a crossing, independence of the closures (0 to 1) at a near miss
+    part : the stop, clamp, friction or user's event; empty of what belongs to the closures
+    impulse, lost : of an impact [N s or N m s], [J]
     """
 
     time: float
     kind: str
-    detail: float
+    detail: float = nan
+    part: str = ""
+    impulse: float = nan
+    lost: float = nan
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Terms
 from centrode.dynamics.forward_dynamics.joint_state import JointState
-from centrode.dynamics.forward_dynamics.motion_problem import MotionNames, worked_loads
+from centrode.dynamics.forward_dynamics.motion_problem import MotionNames, modes_of, worked_loads
 from centrode.dynamics.forward_dynamics.motion_steps import CROSSING, NEAR_MISS, Event, MotionSteps
 from centrode.errors import NotComputedYet
 from centrode.model.mechanism import Mechanism
@@ -49,6 +49,9 @@ class Trajectory:
     ended, cause, events, attempts : as those of `MotionSteps`
     scheme, executor : by which the steps were taken
     steps : number of steps
+    contact_forces : (n, contacts) [N or N m], along the coordinates of contacts
+    contact_modes : (n, contacts), -1 or 1 where a contact is closed, sticks or holds
+    outputs : (n, controllers) [N or N m]
     """
 
     time: Array
@@ -85,6 +88,9 @@ class Trajectory:
     executor: str
     steps: int
     attempts: int
+    contact_forces: Array
+    contact_modes: Array
+    outputs: Array
 
 
 def trajectory_points(mechanism: Mechanism) -> tuple[str, ...]:
@@ -93,12 +99,19 @@ def trajectory_points(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def trajectory_of(
-    equations: EquationsOfMotion, steps: MotionSteps, times: Array, states: Array, scheme: str, executor: str
+    equations: EquationsOfMotion,
+    carried: Sequence[str],
+    steps: MotionSteps,
+    times: Array,
+    states: Array,
+    scheme: str,
+    executor: str,
 ) -> Trajectory:
     """Everything that a motion shows at instants, from its states.
 
     Parameters
     ----------
+    carried : names of what states hold, in order
     steps : of which the first is the start, from which energies and works count
     times : (n) [s]
     states : (carried, n), as `MotionIntegration.states_at` gives them
@@ -110,8 +123,12 @@ def trajectory_of(
     n = len(times)
     with np.errstate(all="ignore"):
         values = tree.values(ARRAYS, q)
-        terms = equations.terms(ARRAYS, values, w, times)
-        a, forces, _flags = equations.accelerations(ARRAYS, terms)
+        fixed = dict(zip(carried, states, strict=True))
+        modes = modes_of(names, fixed.__getitem__)
+        held = list(states[names.part(names.states)])
+        terms = equations.terms(ARRAYS, values, w, times, modes, held)
+        flags = {row: fixed[name] > 0.5 for row, name in zip(equations.flagged, names.flags, strict=True)}
+        a, forces, _flags = equations.accelerations(ARRAYS, terms, flags if equations.contacts else None)
         jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, a, strict=True)]
         state = equations.state(ARRAYS, values, jets, times)
         kinetic = _row(equations.kinetic_energy(state), n)
@@ -127,6 +144,8 @@ def trajectory_of(
                 works[load.label] = works.get(load.label, 0.0) + done
         followed = [equations.loads[k].label for k in worked_loads(equations)]
         followed += [f"drive {kept.name}" for kept in equations.kept]
+        followed += [control.label for control in equations.controls]
+        followed += [contact.label for contact in equations.contacts]
         for label, work in zip(followed, states[names.part(names.works)], strict=True):
             works[label] = works.get(label, 0.0) + work
             free = free + work
@@ -137,6 +156,8 @@ def trajectory_of(
         slides = _orders([(state.slide(guide.id),) for guide in mechanism.guides], n)[..., 0]
         drives = _orders([(state.drive(drive),) for drive in mechanism.drives], n)[..., 0]
         attitudes, spins = _attitudes(mechanism, state, n)
+        in_contacts = _contact_forces(equations, terms, forces, n)
+        forces = forces[: equations.equations]
         multipliers = np.array([_row(x, n) for x in forces]).reshape(len(forces), n).T
         kept = {
             kept.name: -multipliers[:, equations.equations - len(equations.kept) + k]
@@ -144,8 +165,10 @@ def trajectory_of(
         }
         if equations.dependent:
             multipliers[:, sorted(equations.dependent)] = np.nan
-        gaps = [np.abs(_row(x, n)) for x in terms.values]
-        drifts = [np.abs(_row(x, n)) for x in terms.speeds]
+        gaps = [np.abs(_row(x, n)) for x in terms.values[: equations.equations]]
+        drifts = [np.abs(_row(x, n)) for x in terms.speeds[: equations.equations]]
+        outputs = np.array([_row(x, n) for x in terms.outputs]).reshape(-1, n).T
+        mode_numbers = np.array([_row(one.active, n) for one in modes or ()]).reshape(-1, n).T
     return Trajectory(
         times, np.array(q).T.reshape(n, count), np.array(w).T.reshape(n, count),
         np.array([_row(x, n) for x in a]).T.reshape(n, count),
@@ -155,8 +178,19 @@ def trajectory_of(
         np.max(gaps, axis=0, initial=0.0) if gaps else np.zeros(n),
         np.max(drifts, axis=0, initial=0.0) if drifts else np.zeros(n),
         _statuses(steps, times), steps.events, steps.ended, steps.cause, scheme, executor,
-        steps.rows.shape[1] - 1, steps.attempts,
+        steps.rows.shape[1] - 1, steps.attempts, in_contacts, mode_numbers,
+        outputs,
     )  # fmt: skip
+
+
+def _contact_forces(equations: EquationsOfMotion, terms: Terms, forces: Sequence[Number], n: int) -> Array:
+    """Forces in contacts along their coordinates (n, contacts) [N or N m]."""
+    rows = {number: row for row, number in equations.contact_rows}
+    found = []
+    for number, one in enumerate(terms.measures):
+        held = -forces[rows[number]] if number in rows else 0.0
+        found.append(_row(one.strength + held, n))
+    return np.array(found).reshape(-1, n).T
 
 
 def _state_at_start(equations: EquationsOfMotion, names: MotionNames, steps: MotionSteps) -> JointState:

@@ -13,9 +13,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.forward_dynamics.contacts import FRICTION
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
+from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
@@ -46,8 +49,8 @@ _reactions = functools.partial(importlib.import_module, "centrode.dynamics.simul
 
 MOST_NUMBERS = 100_000_000
 """Numbers of a result: with eight bytes each some 0.8 GB."""
-OCCASIONS = ("crossing", "near miss", "doubtful")
-"""What may happen on the way: it passes a change point, passes near one, or nothing tells how it goes on."""
+OCCASIONS = ("crossing", "near miss", "doubtful", *KINDS[2:])
+"""What may happen on the way: change points, what passes near one, where nothing tells how it goes on; and events."""
 
 
 # one mechanism is often simulated again, with other speeds and times: its equations are those that it had
@@ -58,30 +61,40 @@ def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMot
 
 
 def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
-    """What drives: a force by a formula along the first drive."""
+    """What drives: a force by a formula along the first drive, and motors of drives."""
+    motors = tuple(
+        _effort_of(mechanism, [drive.id for drive in mechanism.drives].index(motor.drive), motor.law)
+        for motor in mechanism.motors
+    )
     if law == "0":
-        return ()
+        return motors
     if not mechanism.drives:
         what = _("the coordinate along which the driving moment acts is not given")
         raise InputError("[simulation] driving", what, _("name a link, guide or distance in [[drives]]"))
-    first = mechanism.motion_parameter.drives[0]
+    return (_effort_of(mechanism, 0, law), *motors)
+
+
+def _effort_of(mechanism: Mechanism, number: int, law: str) -> DriveEffort:
+    """A force or moment by a formula along a drive, positive in the sense of the drive."""
+    driven = mechanism.motion_parameter.drives[number]
     driving = Driving(
-        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"), _sense_of_first_drive(mechanism)
+        compile_formula(law, DRIVING_LAW_VARIABLES, "[simulation] driving"),
+        _sense_of_drive(mechanism, number),
     )
 
     def along(m: Any, t: Any, measure: Any, rate: Any) -> Any:
         # the formula knows the coordinate, with the zero and the sense that its author may have chosen
-        return first.sense * driving.over(m, t, first.value_of(measure), first.sense * rate)
+        return driven.sense * driving.over(m, t, driven.value_of(measure), driven.sense * rate)
 
-    return (DriveEffort(first.name, along, frozenset(driving.formula.used)),)
+    return DriveEffort(driven.name, along, frozenset(driving.formula.used))
 
 
-def _sense_of_first_drive(mechanism: Mechanism) -> float:
-    """Sense of the first drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
-    first = mechanism.drives[0]
-    if not first.has_law:
-        return mechanism.motion_parameter.drives[0].sense
-    return float(path_of(mechanism.model_copy(update={"drives": (first,)}), 1.0).forward)
+def _sense_of_drive(mechanism: Mechanism, number: int = 0) -> float:
+    """Sense of a drive along its coordinate: +1.0 or -1.0, that in which its law sets out."""
+    drive = mechanism.drives[number]
+    if not drive.has_law:
+        return mechanism.motion_parameter.drives[number].sense
+    return float(path_of(mechanism.model_copy(update={"drives": (drive,)}), 1.0).forward)
 
 
 @dataclass(frozen=True)
@@ -104,7 +117,7 @@ class MultibodySetting:
     @property
     def sense(self) -> float:
         """Sense of the first drive along its coordinate."""
-        return _sense_of_first_drive(self.mechanism)
+        return _sense_of_drive(self.mechanism)
 
     @property
     def duration(self) -> float:
@@ -229,6 +242,8 @@ def multibody_dataset(setting: MultibodySetting, course: Trajectory, reactions: 
         **_links_and_points(setting, course),
         **_energies(setting, course),
         **_judgements(setting, course),
+        **_contacts(setting, course),
+        **_outputs(setting, course),
         **_occasions(course),
     }
     labels = _labels(setting, course)
@@ -252,7 +267,12 @@ def _labels(setting: MultibodySetting, course: Trajectory) -> dict[str, Any]:
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     joints = {"joint": labels_of(free.links)} if mechanism.space == "sphere" else {}
+    contacts = contact_labels(free)
+    controlled = tuple(one.description.name for one in free.equations.controls)
+    touched = {"contact": labels_of(contacts)} if contacts else {}
     return {
+        **touched,
+        **({"controller": labels_of(controlled)} if controlled else {}),
         "time": vocabulary_variable("time", ("sample",), course.time),
         "drive_value": drive_value,
         "point": labels_of(free.points),
@@ -373,6 +393,10 @@ def _links_and_points(setting: MultibodySetting, course: Trajectory) -> dict[str
 def work_sorts(free: FreeMotion) -> dict[str, str]:
     """Source of work -> "stored", "friction", "other" or "drive"."""
     sorts = {load.label: str(load.term.amount.energy_class) for load in free.equations.loads}
+    for contact in free.equations.contacts:
+        rubs = contact.kind == FRICTION
+        sorts[contact.label] = str(EnergyClass.FRICTION if rubs else EnergyClass.OTHER)
+    sorts |= {control.label: "drive" for control in free.equations.controls}
     driven = [label for label in sorts if label in {f"drive {name}" for name in free.drives}]
     return sorts | dict.fromkeys([*driven, *(f"drive {kept.name}" for kept in free.equations.kept)], "drive")
 
@@ -414,6 +438,34 @@ def _judgements(setting: MultibodySetting, course: Trajectory) -> dict[str, Vari
     }
 
 
+def contact_labels(free: FreeMotion) -> tuple[str, ...]:
+    """Names of the stops, clamps and frictions of a motion."""
+    return tuple(contact.label for contact in free.equations.contacts)
+
+
+def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Forces and modes of stops, clamps and frictions."""
+    contacts = setting.free.equations.contacts
+    if not contacts:
+        return {}
+    force = vocabulary_variable("contact_force", ("sample", "contact"), course.contact_forces)
+    angular = [isinstance(contact.coordinate, Turn) for contact in contacts]
+    force[2]["units"] = _joined_units(["N m" if turns else "N" for turns in angular])
+    modes = course.contact_modes.astype(np.int8)
+    return {
+        "contact_force": force,
+        "contact_mode": vocabulary_variable("contact_mode", ("sample", "contact"), modes),
+    }
+
+
+def _outputs(setting: MultibodySetting, course: Trajectory) -> dict[str, Variable]:
+    """Outputs of controllers."""
+    if not setting.free.equations.controls:
+        return {}
+    name = "controller_output"
+    return {name: vocabulary_variable(name, ("sample", "controller"), course.outputs)}
+
+
 def _occasions(course: Trajectory) -> dict[str, Variable]:
     kinds = np.array([OCCASIONS.index(event.kind) for event in course.events], dtype=np.int8)
     dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
@@ -423,7 +475,22 @@ def _occasions(course: Trajectory) -> dict[str, Variable]:
     return {
         "occasion_time": vocabulary_variable("occasion_time", ("occasion",), times),
         "occasion_kind": (dimensions, values, attributes),
+        **_impacts(course),
     }
+
+
+def _impacts(course: Trajectory) -> dict[str, Variable]:
+    """The parts of events, impulses and lost energies of impacts."""
+    parts = np.array([event.part for event in course.events], dtype=object)
+    if not any(parts):
+        return {}
+    found = {"occasion_part": vocabulary_variable("occasion_part", ("occasion",), parts)}
+    for name, numbers in (
+        ("occasion_impulse", [event.impulse for event in course.events]),
+        ("occasion_loss", [event.lost for event in course.events]),
+    ):
+        found[name] = vocabulary_variable(name, ("occasion",), np.array(numbers, dtype=np.float64))
+    return found
 
 
 def _attributes(
@@ -446,6 +513,7 @@ def _attributes(
         "executor": course.executor,
         "steps": course.steps,
         "driving": settings.law,
+        "conditions": "\n".join(one.label for one in setting.free.equations.conditions),
         "work_sorts": " ".join(work_sorts(setting.free)[name] for name in course.works),
         "worst_residual": float(np.max(variables["residual"][1], initial=0.0)),
         "worst_energy_residual": float(np.nanmax(np.abs(course.energy_residual), initial=0.0)),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import importlib
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, tau
@@ -52,14 +50,11 @@ from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.solve import check_size, solve
 from centrode.locale import _
+from centrode.model.contact_checks import needs_events
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import TIME
 from centrode.model.simulation import MOST_TURNS, Simulation
-
-# the reduced equation needs nothing of the other route
-_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody")
-_many = functools.partial(importlib.import_module, "centrode.dynamics.simulation.many_mechanisms")
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -182,6 +177,12 @@ def reduced_setting(mechanism: Mechanism, settings: Simulation | None = None) ->
     settings = settings or mechanism.simulation
     if settings is None:
         raise no_settings()
+    if needs_events(mechanism):
+        raise InputError(
+            "[simulation] equations",
+            _("stops, clamps, events, belts and static friction are computed by the equations of all links"),
+            _('remove equations = "reduced"'),
+        )
     if len(mechanism.drives) != 1:
         raise InputError(
             "[[drives]]",

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from dataclasses import dataclass
 from math import tau
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.simulation.routes import MULTIBODY, REDUCED, Tell, equations_for
@@ -18,7 +22,16 @@ from centrode.quantities import terminal_unit
 if TYPE_CHECKING:
     import xarray as xr
 
+    from centrode.dynamics.sensitivities.return_map import PeriodicMotion
     from centrode.model.mechanism import Mechanism
+
+# motions by one drive need nothing of the other route
+_multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody_motion")
+_return_maps = functools.partial(importlib.import_module, "centrode.dynamics.sensitivities.return_map")
+
+
+RUN_UP = 0.01
+"""Share of the regime's mean speed within which a machine has run up."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +47,7 @@ class SimulationResults:
     no_regime : why such a drive has none, in a sentence; empty otherwise
     second : the same by the reduced equation, at the instants that it reaches, where the equations of all links were
         taken although one drive has all the mobility; None otherwise
+    periodic : by the equations of all links, the regime that it runs up to; None without one
     """
 
     mechanism: Mechanism
@@ -42,6 +56,26 @@ class SimulationResults:
     regime: Regime | None
     no_regime: str
     second: xr.Dataset | None = None
+    periodic: PeriodicMotion | None = None
+
+    @property
+    def run_up_time(self) -> float | None:
+        """When the mean speed over a period comes and stays within `RUN_UP` of the regime [s]; None if it does not."""
+        if self.periodic is None or self.periodic.turning is None or self.periodic.given:
+            return None
+        times = self.simulation["time"].values
+        course = self.simulation["generalised_coordinate"].values[:, self.periodic.turning]
+        period, turns = self.periodic.period, float(self.periodic.turns[self.periodic.turning])
+        begins = times[times <= times[-1] - period]
+        if not len(begins):
+            return None
+        speeds = (np.interp(begins + period, times, course) - np.interp(begins, times, course)) / (
+            tau * turns
+        )
+        away = np.flatnonzero(np.abs(speeds - 1.0) > RUN_UP)
+        if len(away) and away[-1] + 1 == len(begins):
+            return None
+        return float(begins[away[-1] + 1]) if len(away) else 0.0
 
 
 def simulation_results(
@@ -92,7 +126,8 @@ def results_of_simulation(mechanism: Mechanism, run: xr.Dataset) -> SimulationRe
 def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> SimulationResults:
     """A simulation with the regime of a drive that has turned all the way round, or with its second route."""
     if run.attrs.get("equations") == MULTIBODY:
-        return SimulationResults(mechanism, used, run, None, "", _by_reduced_equation(mechanism, used, run))
+        second = _by_reduced_equation(mechanism, used, run)
+        return SimulationResults(mechanism, used, run, None, "", second, _periodic(mechanism, used, run))
     regime, reason = None, ""
     if _has_turned(mechanism, run):
         try:
@@ -100,6 +135,23 @@ def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> Sim
         except CentrodeError as failure:
             reason = failure.what
     return SimulationResults(mechanism, used, run, regime, reason)
+
+
+def _periodic(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> PeriodicMotion | None:
+    """The regime of a motion that may have run up to one: something turns, and energy is given and taken."""
+    if run.attrs["ended"] != "duration" or not run.attrs["work_sorts"].split() or run.sizes["sample"] < 2:
+        return None
+    sorts = set(run.attrs["work_sorts"].split())
+    turned = np.abs(run["generalised_coordinate"].values[-1] - run["generalised_coordinate"].values[0])
+    if not {"friction", "drive", "other"} & sorts or not np.max(turned, initial=0.0) > 2.0 * tau:
+        return None
+    try:
+        setting = _multibody().multibody_setting(mechanism, used)
+        start = setting.free.initial(setting.speeds, setting.start)
+        found: PeriodicMotion = _return_maps().periodic_motion(setting.free, start, setting.duration)
+    except CentrodeError:
+        return None
+    return found
 
 
 def _by_reduced_equation(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> xr.Dataset | None:
@@ -190,7 +242,7 @@ def check_ended(results: SimulationResults) -> None:
 
 def _check_multibody(run: xr.Dataset) -> None:
     """Raise MotionError where the equations of all links did not get to the end."""
-    if run.attrs["ended"] == "duration":
+    if run.attrs["ended"] in ("duration", "event"):
         return
     time = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
     cause = str(run.attrs["cause"])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.contact_checks import needs_events
 from centrode.structure.plan import generic_mobility
 
 if TYPE_CHECKING:
@@ -22,12 +23,12 @@ Tell: TypeAlias = Callable[[float], None]
 def equations_for(mechanism: Mechanism, settings: Simulation) -> str:
     """The equations that a simulation takes: those of its settings, else the reduced one where it is enough.
 
-    It is enough where one drive with a law has all the mobility, no drive keeps its law, and the first drive's speed
-    alone is given.
+    It is enough where one drive with a law has all the mobility, no drive keeps its law, the first drive's speed
+    alone is given, and nothing makes events but dry friction.
     """
     if settings.equations is not None:
         return settings.equations
-    if settings.keeps or settings.speeds:
+    if settings.keeps or settings.speeds or needs_events(mechanism):
         return MULTIBODY
     if len(mechanism.drives) != 1 or not mechanism.drives[0].has_law:
         return MULTIBODY

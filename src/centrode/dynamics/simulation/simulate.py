@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 from centrode.dynamics.simulation.routes import MULTIBODY, Tell, equations_for, no_settings
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # a simulation needs what one of the routes does
 _reduced = functools.partial(importlib.import_module, "centrode.dynamics.simulation.reduced_motion")
 _multibody = functools.partial(importlib.import_module, "centrode.dynamics.simulation.multibody_motion")
+_gradients = functools.partial(importlib.import_module, "centrode.dynamics.sensitivities.motion_gradients")
 _many = functools.partial(importlib.import_module, "centrode.dynamics.simulation.many_mechanisms")
 
 Executor: TypeAlias = Literal["auto", "arrays", "machine code"]
@@ -37,6 +38,7 @@ def simulate(
     reactions: bool = False,
     vary: Mapping[str, Any] | None = None,
     threads: int | None = None,
+    gradients: Sequence[str] = (),
 ) -> xr.Dataset:
     """The motion of a mechanism under its loads and what drives it, or the states of many that differ in numbers.
 
@@ -61,6 +63,9 @@ def simulate(
         Lengths, masses and loads of many mechanisms of one structure, integrated together by the equations of all
         links. Each starts in the state that is nearest to the described one.
     threads : that share them; as many as there are processors by default
+    gradients : paths of numbers of the description
+        Also the derivatives of the motion by these, by the equations of all links: `coordinate_gradient`,
+        `speed_gradient`, `position_gradient` and `point_speed_gradient` by `number`.
 
     Returns
     -------
@@ -110,7 +115,12 @@ def simulate(
         run: xr.Dataset = _multibody().simulate_multibody(
             mechanism, settings, at, executor, progress, reactions
         )
+        if gradients:
+            run = _gradients().add_gradients(mechanism, settings, run, gradients, executor)
         return run
+    if gradients:
+        what = _("derivatives of a motion come from the equations of all links")
+        raise InputError("gradients", what, _('write equations = "multibody" in [simulation]'))
     if reactions:
         what = _("reactions in a simulation come from the equations of all links")
         raise InputError("reactions", what, _('write equations = "multibody" in [simulation]'))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -88,8 +88,10 @@ class Integration:
         if rows is not None and (lanes != 1 or self.width != 1 or rows.shape[1] != count - HEADER + 1):
             raise ValueError("rows are written of one lane alone")
         short = max(0, self.width - lanes)
-        given = np.pad(np.ascontiguousarray(parameters, np.float64), ((0, 0), (0, short)), mode="edge")
-        before = np.pad(np.ascontiguousarray(state, np.float64), ((0, 0), (0, short)), mode="edge")
+        given = np.ascontiguousarray(parameters, np.float64)
+        before = np.ascontiguousarray(state, np.float64)
+        if short:
+            given, before = (np.pad(one, ((0, 0), (0, short)), mode="edge") for one in (given, before))
         if given.shape[1] != before.shape[1]:
             given = np.ascontiguousarray(np.broadcast_to(given[:, :1], (len(given), before.shape[1])))
         after = np.empty_like(before)
@@ -100,6 +102,27 @@ class Integration:
             address(written), len(written), written.shape[1],
         )  # fmt: skip
         return after[:, :lanes]
+
+    def attempt_of(self, parameters: Array, before: Array, after: Array) -> Callable[[], None]:
+        """A function that takes one attempt from a state into another: each call reads all three arrays anew.
+
+        Parameters
+        ----------
+        parameters : (parameters, 1)
+        before, after : (HEADER + carried, 1)
+
+        All are contiguous, and stay where they are. Nothing is checked or copied, as events try many ends of a step.
+        """
+        if self.width != 1 or not all(one.flags.c_contiguous for one in (parameters, before, after)):
+            raise ValueError("one attempt is that of one lane, in contiguous arrays")
+        none = np.empty((0, 1))
+        places = [address(one) for one in (parameters, before, after, none)]
+        call = self.function.call
+
+        def attempt(_kept: tuple[Array, ...] = (parameters, before, after, none)) -> None:
+            call(1, 1, places[0], 1, 0, 0, places[1], 1, places[2], 1, places[3], 0, 1)
+
+        return attempt
 
 
 def integration_of(

@@ -188,7 +188,12 @@ DIGITS = 4
 """Of the drive's greatest value."""
 
 
-def moving_of(mechanism: Mechanism, motion: xarray.Dataset, by_time: bool = False) -> Moving:
+def moving_of(
+    mechanism: Mechanism,
+    motion: xarray.Dataset,
+    by_time: bool = False,
+    marks: Sequence[tuple[str, float]] = (),
+) -> Moving:
     """A motion to be played, in the plane or on the sphere.
 
     Parameters
@@ -198,6 +203,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset, by_time: bool = Fals
         Of `motion`; the samples that hang together with the initial position are played.
     by_time : bool
         The slider goes through time, as for the motion of a simulation, which may pass a value of the drive again.
+    marks : names and instants [s] that the slider marks
 
     Raises
     ------
@@ -232,6 +238,20 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset, by_time: bool = Fals
         dots=tuple(_dots(mechanism)),
         start=int(np.argmin(np.abs(chosen - initial_sample(scene, motion)))),
         box=np.array([scene.low, scene.high]) / factor,
+        marks=_marks(motion, chosen, marks),
+    )
+
+
+def _marks(
+    motion: xarray.Dataset, chosen: np.ndarray, marks: Sequence[tuple[str, float]]
+) -> tuple[tuple[float, str], ...]:
+    """Marks on the way of a slider through the chosen samples, whose places are parts of them."""
+    if not marks or len(chosen) < 2:
+        return ()
+    times = np.asarray(motion["time"].values, dtype=np.float64)[chosen]
+    shares = np.arange(len(chosen)) / (len(chosen) - 1)
+    return tuple(
+        (float(np.interp(at, times, shares)), name) for name, at in marks if times[0] <= at <= times[-1]
     )
 
 

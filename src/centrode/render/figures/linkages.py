@@ -74,7 +74,8 @@ def mechanism_figure(picture: MechanismPicture, display: Display) -> Figure:
     faded = [] if picture.values else ghosts(scene, dataset, samples[0])
     for axes, sample in zip(grid, samples, strict=False):
         draw(axes, scene, sample, faded=faded)
-        axes.set_title(caption(scene.mechanism, dataset, sample))
+        if picture.captioned:
+            axes.set_title(caption(scene.mechanism, dataset, sample))
     for axes in grid[len(samples) :]:
         axes.set_axis_off()
     write_legend(grid[columns - 1], link_key(scene.mechanism), inches=figure.get_figheight() - 1.0)

@@ -58,6 +58,8 @@ TICKS = 9
 """The most ticks of an angle."""
 PALE = 0.25
 """Opacity of a band."""
+SHADE = 0.08
+"""Opacity of a stretch of the abscissa that is shaded."""
 ROOM = 0.08
 """Share of the panel that the name of a single place takes at its right."""
 
@@ -83,6 +85,9 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
         if panel.from_zero:
             axes.set_ylim(bottom=0.0)
     _mark_places(figure, plot, across, spelling)
+    for low, high in plot.shaded:
+        for axes in figure.axes:
+            axes.axvspan(across * low, across * high, color=INK, alpha=SHADE, linewidth=0.0, zorder=0.5)
     return figure
 
 

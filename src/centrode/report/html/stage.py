@@ -76,7 +76,7 @@ def stage_of(moving: Moving, still: str) -> str:
     return (
         f'<div class="moving" role="group" aria-label="{label}">'
         f'<div class="paper" tabindex="0" aria-label="{label}">{still}</div>'
-        f'{controls_of(first)}<script type="application/json">{data}</script></div>'
+        f'{controls_of(first, marks=moving.marks)}<script type="application/json">{data}</script></div>'
     )
 
 
@@ -96,21 +96,26 @@ _MARKERS = {
 """Outlines of the markers of links that share a colour, in thousandths of an inch as the picture is."""
 
 
-def controls_of(first: str, more: str = "") -> str:
-    """The controls of a player; `first` says where it begins, `more` are elements behind its own."""
+def controls_of(first: str, more: str = "", marks: Sequence[tuple[float, str]] = ()) -> str:
+    """The controls of a player; `first` says where it begins, `more` are elements behind its own.
+
+    `marks` are shares of the slider's way with a name: they are drawn under it.
+    """
 
     def word(text: str) -> str:
         return html.escape(text)
 
     play, back, on = word(_("Play")), word(_("One step back")), word(_("One step on"))
     position, speed, paths, names = word(_("Position")), word(_("speed")), word(_("paths")), word(_("names"))
+    seek = f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
+    if marks:
+        seek = f'<span class="way">{seek}{_ticks(marks)}</span>'
     return (
         '<div class="controls" hidden>'
         f'<button type="button" data-do="play" title="{play}" aria-label="{play}">{PLAY_ICON}</button>'
         f'<button type="button" data-do="back" title="{back}" aria-label="{back}">\u2039</button>'
         f'<button type="button" data-do="on" title="{on}" aria-label="{on}">\u203a</button>'
-        f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
-        f"<output>{word(first)}</output>"
+        f"{seek}<output>{word(first)}</output>"
         f'<label>{speed} <input type="range" data-do="speed" min="-3" max="2" step="0.5" value="0"></label>'
         f'<label><input type="checkbox" data-do="paths" checked> {paths}</label>'
         f'<label><input type="checkbox" data-do="names" checked> {names}</label>{more}</div>'
@@ -169,6 +174,19 @@ def _data(moving: Moving) -> dict[str, Any]:
         found["centre"] = [round(value) for value in sheet.place(np.zeros(2))]
         found["radius"] = round(sheet.scale)
     return found
+
+
+def _ticks(marks: Sequence[tuple[float, str]]) -> str:
+    """A strip under the slider with a mark at each event."""
+    lines = "".join(
+        f'<rect x="{1000 * share - 2:.1f}" y="0" width="4" height="8"><title>{html.escape(name)}</title></rect>'
+        for share, name in marks
+    )
+    said = html.escape(_("Events of the motion"))
+    return (
+        f'<svg class="ticks" viewBox="0 0 1000 8" preserveAspectRatio="none" role="img" aria-label="{said}">'
+        f"{lines}</svg>"
+    )
 
 
 def look_of_link(number: int) -> dict[str, str]:

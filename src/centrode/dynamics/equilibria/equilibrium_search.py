@@ -1,0 +1,240 @@
+"""Positions in which a mechanism stays under its loads: all that are found from many starts, and how stable they are.
+
+Along the free directions N of the closures (G N = 0) the generalised force N' F vanishes there. With one degree of
+freedom it is looked at along the whole curve of positions. With more, positions that are walked to from the initial one
+are starts of Newton's method with the exact stiffness, at once and behind steps down in energy along all but some
+directions. Each step is short and closed again, so what is found can be reached without taking the mechanism apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.equilibria.configuration_curve import (
+    ConfigurationCurve,
+    configuration_curve,
+    repeats_with_position,
+    same_position,
+)
+from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
+from centrode.errors import InputError, MotionError
+from centrode.locale import _
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+LANES, PACES, PACE = 60, 20, 0.5
+"""Walks from the initial position, positions of each, and how far these are apart [rad, or of the greatest length]."""
+ITERATIONS = 80
+APPROACHES = 40
+MOST_UNSTABLE = 4
+"""Unstable directions of equilibria that are sought on purpose; with more they are found by Newton's method alone."""
+LONGEST = 0.2
+"""A step [rad, or of the greatest length]."""
+SETTLED = 1e-11
+"""Newton's method has come to its end where a step is shorter than this."""
+NEARLY = 1e-7
+"""So short steps count too where rounding keeps them from becoming shorter."""
+BALANCED = 1e-9
+"""Share of the forces that may be left at an equilibrium."""
+SAME = 1e-6
+"""Equilibria nearer than this are one."""
+IDLE = 1e-12
+"""Forces below this share of weights and springs are none."""
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """Equilibria of a mechanism.
+
+    Attributes
+    ----------
+    loaded : of which mechanism
+    places : (n, coordinates) [rad or m], from the nearest to the initial position to the farthest
+    starts : positions from which they were sought
+    curve : all positions of a mechanism with one degree of freedom; None with more
+    """
+
+    loaded: LoadedMechanism
+    places: Array
+    starts: int
+    curve: ConfigurationCurve | None
+
+
+def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
+    """All equilibria that are found from the initial position and many others that it can be brought to.
+
+    Raises
+    ------
+    InputError
+        Nothing can move, or nothing acts.
+    MotionError
+        No equilibrium is found.
+    """
+    if not loaded.mobility:
+        what = _("nothing can move: all drives are held, or it has no degree of freedom")
+        raise InputError("hold", what, _("hold fewer drives"))
+    curve = configuration_curve(loaded) if loaded.mobility == 1 else None
+    walked = None if curve is not None else walked_positions(loaded)
+    starts = walked if walked is not None else _starts_on(curve)
+    _check_forces(loaded, curve.places if curve is not None else starts)
+    found = settled(loaded, starts)
+    if curve is None:
+        found = np.concatenate([found, settled(loaded, approached(loaded, starts[::2]))])
+    places = _distinct(loaded, found[np.isfinite(found[:, 0])])
+    if not len(places):
+        what = _("no equilibrium is found from {count} positions")
+        raise MotionError(
+            "", what.format(count=len(starts) if curve is None else len(curve.places)),
+            _("let springs, weights or friction hold it, or hold a drive: --hold DRIVE=VALUE"),
+        )  # fmt: skip
+    count = len(curve.places) if curve is not None else len(starts)
+    return Equilibria(loaded, places, count, curve)
+
+
+def walked_positions(loaded: LoadedMechanism) -> Array:
+    """Positions (n, coordinates) that random walks from the initial one reach, the initial one first."""
+    generator = np.random.default_rng(30)
+    lanes = np.tile(loaded.position.coordinates, (LANES, 1))
+    found = [loaded.position.coordinates[None]]
+    way = np.zeros((LANES, loaded.mobility))
+    for _pace in range(PACES):
+        _left, rows = loaded.closures_at(lanes)
+        free = loaded.free_directions(rows)
+        # walks go on as they did, more or less, so that they come far
+        way = 0.7 * way + generator.normal(size=way.shape)
+        moved = np.einsum("ncm,nm->nc", free, way)
+        longest = np.max(np.abs(moved / loaded.units), axis=1)
+        ahead = loaded.closed(lanes + moved * (PACE / longest)[:, None])
+        far = np.max(np.abs((ahead - lanes) / loaded.units), axis=1)
+        reached = far < 2.0 * PACE
+        lanes = np.where(reached[:, None], ahead, lanes)
+        way = np.where(reached[:, None], way, -way)
+        found.append(lanes[reached])
+    return np.concatenate(found)
+
+
+def _starts_on(curve: ConfigurationCurve | None) -> Array:
+    """Positions at which the force along the curve changes its sign, or is least in size."""
+    assert curve is not None
+    force = curve.force
+    size = np.abs(force)
+    starts = [curve.loaded.position.coordinates]
+    here, there = force[:-1], force[1:]
+    for k in np.flatnonzero((here < 0.0) != (there < 0.0)):
+        share = here[k] / (here[k] - there[k])
+        starts.append(curve.places[k] + share * (curve.places[k + 1] - curve.places[k]))
+    least = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    starts += list(curve.places[least])
+    return np.array(starts)
+
+
+def force_scale(loaded: LoadedMechanism, places: Array) -> float:
+    """What generalised forces are compared with [J]: the greatest at some positions, or a unit away from them."""
+    found = loaded.at(places)
+    force = np.abs(found.force * loaded.units)
+    stiffness = np.abs(found.stiffness * np.outer(loaded.units, loaded.units))
+    sizes = [np.max(one[np.isfinite(one)], initial=0.0) for one in (force, stiffness)]
+    return float(max(sizes))
+
+
+def _check_forces(loaded: LoadedMechanism, places: Array) -> None:
+    """Refuse what stays everywhere, because nothing acts along what can move."""
+    found = loaded.at(places)
+    force = np.einsum("nc,ncm->nm", found.force, loaded.free_directions(found.rows))
+    scale = float(np.max(np.abs(found.force * loaded.units), initial=0.0))
+    if not np.nanmax(np.abs(force), initial=0.0) > IDLE * scale:
+        what = _("no load acts along what can move: every position is an equilibrium")
+        raise InputError("[[loads]]", what, _("add gravity, springs or other loads"))
+
+
+def approached(loaded: LoadedMechanism, starts: Array) -> Array:
+    """Positions behind steps towards equilibria with no, one, two... unstable directions, by turns.
+
+    Steps go down along all directions but so many of the least stiffness, along which they go up (the gentlest ascent:
+    W. E and X. Zhou, Nonlinearity 24, 2011).
+    """
+    places, count = starts.copy(), loaded.mobility
+    unstable = np.arange(len(starts)) % (min(count, MOST_UNSTABLE) + 1)
+    senses = np.where(np.arange(count) < unstable[:, None], -1.0, 1.0)
+    for _step in range(APPROACHES):
+        found = loaded.at(places)
+        free = loaded.free_directions(found.rows)
+        force, stiffness = _reduced(found.residual, found.stiffness, free)
+        sizes, vectors = np.linalg.eigh(np.nan_to_num(0.5 * (stiffness + stiffness.transpose(0, 2, 1))))
+        floor = 1e-6 * np.max(np.abs(sizes), axis=1, initial=1e-300)[:, None]
+        along = senses * np.einsum("nij,ni->nj", vectors, force) / np.maximum(np.abs(sizes), floor)
+        places = _moved(loaded, places, free, np.einsum("nij,nj->ni", vectors, along), None)[0]
+    return places
+
+
+def settled(loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float] | None = None) -> Array:
+    """Equilibria (n, coordinates) that Newton's method reaches from positions; NaN where it reaches none."""
+    scale = force_scale(loaded, loaded.closed(starts, numbers)) or 1.0
+    places = loaded.closed(starts, numbers)
+    longest = np.full(len(places), np.inf)
+    left = np.flatnonzero(np.isfinite(places[:, 0]))
+    for _step in range(ITERATIONS):
+        if not len(left):
+            break
+        found = loaded.at(places[left], numbers=numbers)
+        free = loaded.free_directions(found.rows)
+        force, stiffness = _reduced(found.residual, found.stiffness, free)
+        along = np.einsum("nij,nj->ni", np.linalg.pinv(np.nan_to_num(stiffness), 1e-12), force)
+        places[left], longest[left] = _moved(loaded, places[left], free, along, numbers)
+        left = left[~(longest[left] < SETTLED)]
+    settling = np.flatnonzero(longest < NEARLY)
+    if len(settling):
+        found = loaded.at(places[settling], numbers=numbers)
+        free = loaded.free_directions(found.rows)
+        force = np.max(np.abs(np.einsum("nc,ncm->nm", found.residual, free)), axis=1, initial=0.0)
+        settling = settling[force <= BALANCED * scale]
+    found_ones = np.zeros(len(places), dtype=bool)
+    found_ones[settling] = True
+    places[~found_ones] = np.nan
+    return places
+
+
+def _reduced(residual: Array, stiffness: Array, free: Array) -> tuple[Array, Array]:
+    """Force and stiffness along the free directions."""
+    return (
+        np.einsum("nc,ncm->nm", residual, free),
+        np.einsum("ncm,ncd,nde->nme", free, stiffness, free),
+    )
+
+
+def _moved(
+    loaded: LoadedMechanism, places: Array, free: Array, along: Array, numbers: Mapping[str, float] | None
+) -> tuple[Array, Array]:
+    """Positions behind a step, closed, and how long the step is; a long one is cut."""
+    step = np.einsum("ncm,nm->nc", free, along)
+    longest = np.max(np.abs(step / loaded.units), axis=1, initial=0.0)
+    with np.errstate(all="ignore"):
+        step = step * np.minimum(1.0, LONGEST / np.maximum(longest, 1e-300))[:, None]
+    ahead = loaded.closed(places + step, numbers)
+    # where it does not close it stays, and tries the other side
+    lost = ~np.isfinite(ahead[:, 0])
+    ahead[lost] = places[lost]
+    return ahead, np.where(lost, np.inf, longest)
+
+
+def _distinct(loaded: LoadedMechanism, places: Array) -> Array:
+    """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first."""
+    begin = loaded.position.coordinates
+    if repeats_with_position(loaded):
+        angles = np.array([one.kind == "angle" for one in loaded.coordinates])
+        turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
+        places = np.where(angles, places - turns, places)
+        apart = lambda one: same_position(loaded, places, one)  # noqa: E731
+    else:
+        apart = lambda one: np.max(np.abs((places - one) / loaded.units), axis=1)  # noqa: E731
+    order = np.argsort(apart(begin), kind="stable") if len(places) else []
+    kept: list[int] = []
+    for k in order:
+        if not kept or np.min(apart(places[k])[kept]) > SAME:
+            kept.append(int(k))
+    return np.asarray(places[kept])

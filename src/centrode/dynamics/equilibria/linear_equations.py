@@ -1,0 +1,431 @@
+"""The equations of motion and their exact derivatives by coordinates, speeds and numbers, at many states at once.
+
+With M q'' = F(q, q') - G(q)' lambda and g(q) = 0, a small departure x from a state with constant speeds obeys
+
+    M x'' + C x' + K x + G' y = 0,   G x = 0
+    C = -dF/dq',   K = -d(F - G' lambda)/dq   (lambda held)
+
+(P. C. Mueller and W. O. Schiehlen, Linear Vibrations, 1985, chapter 4.) All matrices are graphs: what moves a mechanism
+is traced once and differentiated by the chain rule, so nothing is taken by differences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
+from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of, shafts_of
+from centrode.dynamics.forward_dynamics.initial_position import (
+    InitialPosition,
+    equation_units,
+    position_of_description,
+    units_of,
+)
+from centrode.dynamics.forward_dynamics.initial_state import drive_values, initial_state
+from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
+from centrode.dynamics.forward_dynamics.spanning_tree import JointCoordinate, spanning_tree_of
+from centrode.dynamics.loads import AppliedLoad, Constant, Friction, LoadTerm, MassesAndLoads, Situation
+from centrode.errors import InputError
+from centrode.kinematics.path import DrivenBy
+from centrode.laws import Uniform
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.model.reading import nearest
+from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
+from centrode.numerics.graphs import Graph, directional_derivatives
+from centrode.numerics.jets import Jet
+from centrode.numerics.scans import evaluate
+from centrode.structure.constraints import AngleDrive, DisplacementDrive, DistanceDrive, constraints_of
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+
+TIME = "time"
+CLOSED, OPEN = 1e-15, 1e-10
+"""Positions are closed to this share of the lengths at best; what stays open by more than the second is none."""
+CLOSING_STEPS = 25
+RANK = 1e-9
+"""A singular value of the closures below this share of the greatest counts as none."""
+
+
+@dataclass(frozen=True)
+class DryFriction:
+    """Dry friction along a coordinate: up to this force it holds."""
+
+    label: str
+    term: LoadTerm
+
+
+@dataclass(frozen=True)
+class LinearEquations:
+    """The equations at n states, for c coordinates and e closure equations; units are SI.
+
+    Attributes
+    ----------
+    residual : (n, c) F - G' lambda, what is left to accelerate
+    force : (n, c) F
+    closures, rows : (n, e), (n, e, c) left sides of the closures, and G
+    drift, bias : (n, e) derivatives of the left sides by time: the first, and of the second what speeds alone make
+    mass, damping, stiffness : (n, c, c) M, C and K
+    friction, along : (n, f), (n, f, c) greatest dry frictions, and the derivatives of what they act along
+    """
+
+    residual: Array
+    force: Array
+    closures: Array
+    rows: Array
+    drift: Array
+    bias: Array
+    mass: Array
+    damping: Array
+    stiffness: Array
+    friction: Array
+    along: Array
+
+
+@dataclass(frozen=True)
+class LoadedMechanism:
+    """A mechanism under its loads, ready to be held against them.
+
+    Attributes
+    ----------
+    mechanism : the description
+    equations : equations of motion with its numbers; drives that are held are kept in them
+    position : coordinates of the initial position
+    frictions : dry frictions, which the equations leave out
+    """
+
+    mechanism: Mechanism
+    equations: EquationsOfMotion
+    position: InitialPosition
+    frictions: tuple[DryFriction, ...] = ()
+
+    @property
+    def coordinates(self) -> tuple[JointCoordinate, ...]:
+        """Joint coordinates in order."""
+        return self.equations.tree.coordinates
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.equations.size
+
+    @cached_property
+    def units(self) -> Array:
+        """What a change of each coordinate is compared with (coordinates): 1 rad, or the greatest length."""
+        return units_of(self.equations.tree, self.equations.numbers)
+
+    @cached_property
+    def equation_units(self) -> Array:
+        """What the left side of each closure is compared with (equations)."""
+        return equation_units(self.equations.constraints, self.equations.numbers)
+
+    @cached_property
+    def traced(self) -> NumbersAsVariables:
+        """The equations with numbers as variables."""
+        return NumbersAsVariables.of(self.equations)
+
+    def numbers_of(self, equations: EquationsOfMotion) -> dict[str, float]:
+        """Values of the variables that stand for numbers, in equations of the same structure."""
+        values = self.traced.values(equations)
+        return dict(zip(self.traced.parameters, values[:, 0].tolist(), strict=True))
+
+    @cached_property
+    def numbers(self) -> dict[str, float]:
+        """Values of the variables that stand for numbers of this mechanism."""
+        return self.numbers_of(self.equations)
+
+    @cached_property
+    def graph(self) -> Graph:
+        """All of `LinearEquations`, entry by entry; what is a plain zero is left out."""
+        m, equations = EXPRESSIONS, self.traced.equations
+        q = [variable(f"coordinate {k}") for k in range(self.size)]
+        v = [variable(f"speed {k}") for k in range(self.size)]
+        time = variable(TIME)
+        values = equations.tree.values(m, q)
+        terms = equations.terms(m, values, v, time)
+        force = [as_node(terms.force.get(i, 0.0)) for i in range(self.size)]
+        residual: list[Any] = list(force)
+        for k, row in enumerate(terms.rows):
+            for i, x in row.items():
+                residual[i] = residual[i] - x * variable(f"reaction {k}")
+        left = [as_node(x) for x in residual]
+        outputs: dict[str, Node] = {f"residual {i}": x for i, x in enumerate(left)}
+        outputs |= {f"force {i}": x for i, x in enumerate(force)}
+        outputs |= {f"closures {k}": as_node(x) for k, x in enumerate(terms.values)}
+        outputs |= {f"drift {k}": as_node(x) for k, x in enumerate(terms.speeds)}
+        outputs |= {f"bias {k}": as_node(x) for k, x in enumerate(terms.bias)}
+        outputs |= {f"rows {k} {i}": as_node(x) for k, row in enumerate(terms.rows) for i, x in row.items()}
+        for (i, j), x in terms.mass.items():
+            outputs[f"mass {i} {j}"] = outputs[f"mass {j} {i}"] = as_node(x)
+        outputs |= _matrix("stiffness", left, q)
+        outputs |= _matrix("damping", force, v)
+        for number, friction in enumerate(self.frictions):
+            state = equations.state(m, values, [Jet((x, y, 0.0)) for x, y in zip(q, v, strict=True)], time)
+            coordinate = friction.term.coordinate
+            now = Situation(time, state.parameter, coordinate.value(state), 0.0, 0.0, m)
+            outputs[f"friction {number}"] = as_node(friction.term.amount(now))
+            slope = as_node(coordinate.slope(state).value)
+            for k, (x,) in enumerate(directional_derivatives([slope], [{one: 1.0} for one in v])):
+                outputs[f"along {number} {k}"] = as_node(x)
+        return Graph(outputs)
+
+    def at(
+        self,
+        coordinates: Array,
+        reactions: Array | None = None,
+        speeds: Array | None = None,
+        numbers: Mapping[str, Number] | None = None,
+    ) -> LinearEquations:
+        """The equations at n states.
+
+        Parameters
+        ----------
+        coordinates : (n, coordinates) [rad or m]
+        reactions : (n, equations), forces of the closures; the ones that hold best where they are left out
+        speeds : (n, coordinates); none where they are left out
+        numbers : values of `traced.parameters`, those of the mechanism where they are left out
+        """
+        count, e = len(coordinates), self.equations.equations
+        if reactions is None:
+            found = self._evaluated(coordinates, np.zeros((count, e)), speeds, numbers)
+            if not e:
+                return found
+            reactions = self.reactions(found)
+        return self._evaluated(coordinates, np.reshape(reactions, (count, e)), speeds, numbers)
+
+    def _evaluated(
+        self,
+        coordinates: Array,
+        reactions: Array,
+        speeds: Array | None,
+        numbers: Mapping[str, Number] | None,
+    ) -> LinearEquations:
+        count, e, c, f = len(coordinates), self.equations.equations, self.size, len(self.frictions)
+        values: dict[str, Any] = {TIME: 0.0} | dict(self.numbers if numbers is None else numbers)
+        values |= {f"coordinate {k}": coordinates[:, k] for k in range(c)}
+        values |= {f"speed {k}": 0.0 if speeds is None else speeds[:, k] for k in range(c)}
+        values |= {f"reaction {k}": reactions[:, k] for k in range(e)}
+        found = evaluate(self.graph, values)
+        shapes = {
+            "residual": (c,), "force": (c,), "closures": (e,), "rows": (e, c), "drift": (e,), "bias": (e,),
+            "mass": (c, c), "damping": (c, c), "stiffness": (c, c), "friction": (f,), "along": (f, c),
+        }  # fmt: skip
+        arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
+        for name, x in found.items():
+            kind, *places = name.split()
+            arrays[kind][(slice(None), *map(int, places))] = x
+        return LinearEquations(**arrays)
+
+    def reactions(self, found: LinearEquations) -> Array:
+        """Forces of the closures (n, equations) that leave least to accelerate."""
+        rows = found.rows * self.units[None, None, :]
+        return np.asarray(
+            np.einsum("nkc,nc->nk", np.linalg.pinv(rows.transpose(0, 2, 1), RANK), found.force * self.units)
+        )
+
+    def with_numbers_of(self, other: LoadedMechanism) -> EquationsOfMotion:
+        """The equations of another mechanism of this structure, with wheels that mesh as they do here."""
+        numbers = other.equations.numbers
+        gearing = numbers.gearing.with_phases(self.equations.numbers.gearing.phase)
+        return replace(other.equations, numbers=replace(numbers, gearing=gearing))
+
+    @cached_property
+    def _graph_by_numbers(self) -> Graph:
+        """Derivatives of residual and closures, along a change of all numbers."""
+        kept = ("residual", "closures")
+        outputs = {name: x for name, x in self.graph.outputs.items() if name.startswith(kept)}
+        change = {variable(name): variable(f"change of {name}") for name in self.traced.parameters}
+        (found,) = directional_derivatives(list(outputs.values()), [change])
+        return Graph({name: as_node(x) for name, x in zip(outputs, found, strict=True)})
+
+    def slopes_by_numbers(
+        self, place: Array, reactions: Array, numbers: Mapping[str, float], changes: Mapping[str, float]
+    ) -> tuple[Array, Array]:
+        """How residual (coordinates) and closures (equations) change with the numbers, at one position at rest."""
+        values: dict[str, Any] = {TIME: 0.0} | dict(numbers)
+        values |= {f"change of {name}": changes[name] for name in self.traced.parameters}
+        values |= {f"coordinate {k}": x for k, x in enumerate(place)}
+        values |= {f"speed {k}": 0.0 for k in range(self.size)}
+        values |= {f"reaction {k}": x for k, x in enumerate(reactions)}
+        found = evaluate(self._graph_by_numbers, values)
+        return (
+            np.array([float(found[f"residual {k}"]) for k in range(self.size)]),
+            np.array([float(found[f"closures {k}"]) for k in range(self.equations.equations)]),
+        )
+
+    @cached_property
+    def rank(self) -> int:
+        """Number of closure equations that do not repeat others."""
+        places = self._places_nearby()
+        sizes = np.linalg.svd(
+            self.scaled_rows(self.at(places, np.zeros((len(places), self.equations.equations))).rows),
+            compute_uv=False,
+        )
+        if not sizes.size:
+            return 0
+        return int(np.max(np.sum(sizes > RANK * np.max(sizes, axis=1, initial=1.0)[:, None], axis=1)))
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom, drives that are held taken off."""
+        return self.size - self.rank
+
+    def _places_nearby(self) -> Array:
+        """The initial position, and others that need not close: in general rows are as independent there."""
+        generator = np.random.default_rng(3)
+        here = self.position.coordinates
+        away = generator.uniform(-0.3, 0.3, (4, self.size)) * self.units
+        return np.array([here, *(self.closed(here + one) for one in away)])
+
+    def scaled_rows(self, rows: Array) -> Array:
+        """G (n, equations, coordinates) without units."""
+        return np.asarray(rows * self.units / self.equation_units[:, None])
+
+    def free_directions(self, rows: Array) -> Array:
+        """Columns (n, coordinates, mobility) along which the closures let it move, of unit length in the units."""
+        count = len(rows)
+        if not rows.shape[1]:
+            return np.broadcast_to(np.diag(self.units), (count, self.size, self.size)).copy()
+        _left, _sizes, right = np.linalg.svd(self.scaled_rows(rows))
+        return np.asarray(right[:, self.rank :, :].transpose(0, 2, 1) * self.units[None, :, None])
+
+    def closed(self, coordinates: Array, numbers: Mapping[str, Number] | None = None) -> Array:
+        """Coordinates nearest to these (coordinates) or (n, coordinates) that close; NaN where none are found."""
+        place = np.atleast_2d(np.array(coordinates, dtype=np.float64))
+        if self.equations.equations:
+            error = np.full(len(place), np.inf)
+            open_ones = np.arange(len(place))
+            for step in range(CLOSING_STEPS):
+                left, rows = self.closures_at(place[open_ones], numbers)
+                gap = np.max(np.abs(left) / self.equation_units, axis=1)
+                # what no longer gets better has reached the rounding of its lengths
+                better = gap < error[open_ones]
+                error[open_ones] = np.fmin(error[open_ones], gap)
+                going = (gap > CLOSED) & np.isfinite(gap) & (better | (gap > OPEN) | (step < 3))
+                open_ones, left, rows = open_ones[going], left[going], rows[going]
+                if not len(open_ones):
+                    break
+                inverse = np.linalg.pinv(self.scaled_rows(rows), 1e-10)
+                shift = np.einsum("nck,nk->nc", inverse, left / self.equation_units)
+                longest = np.max(np.abs(shift), axis=1, initial=1e-300)
+                place[open_ones] -= shift * self.units * np.minimum(1.0, 0.5 / longest)[:, None]
+            place[~(error < OPEN)] = np.nan
+        return place[0] if np.ndim(coordinates) == 1 else place
+
+    @cached_property
+    def _closure_graph(self) -> Graph:
+        kept = ("closures", "rows")
+        return Graph({name: x for name, x in self.graph.outputs.items() if name.startswith(kept)})
+
+    def closures_at(self, place: Array, numbers: Mapping[str, Number] | None = None) -> tuple[Array, Array]:
+        """Left sides of the closures (n, equations) and G (n, equations, coordinates)."""
+        values: dict[str, Any] = {TIME: 0.0} | dict(self.numbers if numbers is None else numbers)
+        values |= {f"coordinate {k}": place[:, k] for k in range(self.size)}
+        values |= {f"speed {k}": 0.0 for k in range(self.size)}
+        found = evaluate(self._closure_graph, values)
+        left = np.zeros((len(place), self.equations.equations))
+        rows = np.zeros((len(place), self.equations.equations, self.size))
+        for name, x in found.items():
+            kind, *places = name.split()
+            (left if kind == "closures" else rows)[(slice(None), *map(int, places))] = x
+        return left, rows
+
+    def drive_values(self, coordinates: Array) -> dict[str, float]:
+        """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
+        return drive_values(self.equations, coordinates)
+
+
+def _matrix(name: str, outputs: Sequence[Node], by: Sequence[Node]) -> dict[str, Node]:
+    """Entries of minus the derivative of outputs by variables, without the plain zeros."""
+    columns = directional_derivatives(outputs, [{one: 1.0} for one in by])
+    return {
+        f"{name} {i} {j}": as_node(-x)
+        for j, column in enumerate(columns)
+        for i, x in enumerate(column)
+        if not (isinstance(x, float) and x == 0.0)
+    }
+
+
+def loaded_mechanism(
+    mechanism: Mechanism,
+    hold: Mapping[str, float] | None = None,
+    speeds: Mapping[str, float] | None = None,
+    efforts: Sequence[DriveEffort] = (),
+) -> LoadedMechanism:
+    """A mechanism under its loads, all drives being free but those that are held or turn steadily.
+
+    Parameters
+    ----------
+    hold : id of a drive -> value at which it is held [rad or m; on the sphere of guides rad]
+    speeds : id of a drive -> constant speed that it keeps [rad/s or m/s], from its value in the initial position on
+    efforts : forces and moments of drives besides the loads
+
+    Raises
+    ------
+    InputError
+        It does not close, there is neither mass nor load, a drive is not known, or something depends on time.
+    NotComputedYet
+        A load that acts in one sense of a motion alone, a plain sum of friction, friction by coefficients.
+    """
+    hold, speeds = hold or {}, speeds or {}
+    for name in (*hold, *speeds):
+        if name not in {drive.id for drive in mechanism.drives}:
+            what = _("there is no drive {name}").format(name=f'"{name}"')
+            raise InputError("[[drives]]", what, nearest(name, [drive.id for drive in mechanism.drives]))
+    tree = spanning_tree_of(mechanism)
+    position = position_of_description(mechanism, tree)
+    burden = MassesAndLoads.of(mechanism)
+    smooth, frictions = split_friction(burden.loads)
+    loads = free_loads_of(mechanism, smooth, efforts)
+    _check_times(loads)
+    equations = EquationsOfMotion(
+        tree, position.numbers, burden.masses, loads, (), shafts=shafts_of(mechanism)
+    )
+    if hold:
+        values = {f"drives.{name}": value for name, value in hold.items()}
+        brought = initial_state(equations, position.coordinates, {}, values)
+        position = InitialPosition(brought.coordinates, position.numbers)
+    begin = drive_values(equations, position.coordinates)
+    kept = _kept_drives(mechanism, {name: (begin[name], speeds.get(name, 0.0)) for name in (*hold, *speeds)})
+    return LoadedMechanism(mechanism, replace(equations, kept=kept), position, frictions)
+
+
+def split_friction(
+    loads: Sequence[AppliedLoad],
+) -> tuple[tuple[AppliedLoad, ...], tuple[DryFriction, ...]]:
+    """Loads without their dry frictions, and these."""
+    smooth, frictions = [], []
+    for load in loads:
+        efforts = []
+        for term in load.efforts:
+            amount = term.amount
+            if isinstance(amount, Friction) and amount.sensed and term.gate is None and term.works is None:
+                frictions.append(DryFriction(load.label, replace(term, amount=amount.dry)))
+                amount = replace(amount, dry=Constant(0.0))
+            efforts.append(replace(term, amount=amount))
+        smooth.append(replace(load, efforts=tuple(efforts)))
+    return tuple(smooth), tuple(frictions)
+
+
+def _kept_drives(mechanism: Mechanism, kept: Mapping[str, tuple[float, float]]) -> tuple[KeptDrive, ...]:
+    """Drives that begin at a value and keep a speed, in the order of the constraints."""
+    known = {drive.id: drive for drive in mechanism.drives}
+    return tuple(
+        KeptDrive(one, DrivenBy(known[one.drive], Uniform(kept[one.drive][1]), kept[one.drive][0]))
+        for one in constraints_of(mechanism)
+        if isinstance(one, AngleDrive | DisplacementDrive | DistanceDrive) and one.drive in kept
+    )
+
+
+def _check_times(loads: Sequence[LoadAlong]) -> None:
+    for load in loads:
+        if "t" in load.term.amount.uses:
+            what = _("it depends on time, and at rest nothing may")
+            raise InputError(load.label, what, _("write it as a function of the position"))

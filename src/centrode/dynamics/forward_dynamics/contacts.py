@@ -1,0 +1,229 @@
+"""Contacts of a free motion: stops, clamps and dry friction as rows of the equations that count or do not.
+
+A contact that is closed, sticks or holds is one more constraint: the derivative of its coordinate by the joint
+coordinates is a row, and a flag says whether it counts. So all modes of a motion share one set of equations. (F.
+Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996, chapters 4 to 6.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, TypeAlias
+
+from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
+from centrode.dynamics.load_coordinates import Component, Coordinate, Distance, Slide, Turn
+from centrode.dynamics.loads import Constant, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
+from centrode.errors import InputError, NotComputedYet
+from centrode.locale import _
+from centrode.model.contacts import MEASURED, MeasuredPart
+from centrode.model.loads import GuideFriction, HingeFriction
+from centrode.model.mechanism import Mechanism
+from centrode.numerics.text_formula import TextFormula, compile_formula
+
+Number: TypeAlias = Any
+
+STOP, FRICTION, CLAMP, COMPLIANT = "stop", "friction", "clamp", "compliant stop"
+"""Kinds of contacts."""
+AT_LEAST, OPEN, AT_MOST = -1.0, 0.0, 1.0
+"""Modes of a stop: closed at the bound below, open, closed at the bound above; what sticks or holds has mode 1."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Something that a coordinate may meet, rub against or be held by.
+
+    Attributes
+    ----------
+    kind : `STOP`, `FRICTION`, `CLAMP` or `COMPLIANT`
+    label : of results; the friction of a load has that of the load
+    coordinate : along which it works
+    least, most : bounds of a stop [rad or m], or None
+    restitution : of a rigid stop
+    stiffness, damping : of a compliant one
+    kinetic : friction while it slips, against the motion [N or N m]; of a load with a sense its force forwards
+    backwards : its force backwards; None of friction
+    static : the greatest force by which it holds what sticks; None where it is the kinetic one
+    drift : speed of the surface along the coordinate [rad/s or m/s]
+    until : when a clamp lets go: a time [s], the name of an event, or None
+    """
+
+    kind: str
+    label: str
+    coordinate: Coordinate
+    least: Number | None = None
+    most: Number | None = None
+    restitution: float = 0.0
+    stiffness: Number = 0.0
+    damping: Number = 0.0
+    kinetic: LoadLaw | BrokenLine | None = None
+    backwards: LoadLaw | BrokenLine | None = None
+    static: Number | None = None
+    drift: Number = 0.0
+    until: float | str | None = None
+
+    def forces(self, now: Situation) -> tuple[Number, Number]:
+        """Force along the coordinate while it slips forwards, and while it slips backwards."""
+        assert self.kinetic is not None
+        forwards = self.kinetic(now)
+        if self.backwards is None:
+            return -forwards, forwards
+        return forwards, self.backwards(now)
+
+    @property
+    def has_row(self) -> bool:
+        """Whether it becomes a constraint; a compliant stop is a force in each of its modes."""
+        return self.kind != COMPLIANT
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A user's event: a formula of time, a coordinate and its speed that passes zero.
+
+    Attributes
+    ----------
+    coordinate : None of a formula of time alone
+    ends : whether it ends the motion
+    """
+
+    label: str
+    coordinate: Coordinate | None
+    formula: TextFormula
+    ends: bool
+
+
+@dataclass(frozen=True)
+class ContactMode:
+    """The mode of a contact as numbers over any algebra.
+
+    Attributes
+    ----------
+    active : of a stop -1, 0 or 1; of friction and clamps 1 while they hold
+    sense : of friction the sense in which it slips; 0 while it sticks
+    held : value of the coordinate less the drift's way at which it holds [rad or m]
+    """
+
+    active: Number
+    sense: Number
+    held: Number
+
+
+FREE = ContactMode(0.0, 0.0, 0.0)
+
+
+def coordinate_of_part(mechanism: Mechanism, part: MeasuredPart) -> Coordinate:
+    """What a stop, a clamp or an event measures."""
+    if part.link is not None:
+        return Turn(part.link, part.relative_to)
+    if part.guide is not None:
+        return Slide(part.guide)
+    if part.point is not None:
+        return Component(part.point, part.direction or (1.0, 0.0))
+    first, second = part.points or ("", "")
+    return Distance(first, second)
+
+
+def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tuple[Contact, ...]:
+    """Stops, then clamps of a description, then the friction of its loads."""
+    found = [
+        Contact(
+            STOP if stop.is_rigid else COMPLIANT,
+            stop.label,
+            coordinate_of_part(mechanism, stop),
+            stop.least,
+            stop.most,
+            stop.restitution or 0.0,
+            stop.stiffness or 0.0,
+            stop.damping or 0.0,
+        )
+        for stop in mechanism.stops
+    ]
+    found += [
+        Contact(CLAMP, clamp.label, coordinate_of_part(mechanism, clamp), until=clamp.until)
+        for clamp in mechanism.clamps
+    ]
+    return (*found, *frictions)
+
+
+def conditions_of(mechanism: Mechanism) -> tuple[Condition, ...]:
+    """The user's events of a description."""
+    found = []
+    for event in mechanism.events:
+        formula = compile_formula(event.when, ("t", "x", "v"), f"[[events]] {event.label}")
+        measured = any(getattr(event, key) is not None for key in MEASURED)
+        coordinate = coordinate_of_part(mechanism, event) if measured else None
+        found.append(Condition(event.label, coordinate, formula, event.do == "end"))
+    return tuple(found)
+
+
+def friction_contact(
+    load: HingeFriction | GuideFriction, label: str, law: Friction, along: Coordinate
+) -> Contact:
+    """The dry part of a friction as a contact.
+
+    Raises InputError for a static value below a kinetic one that is a number; formulas are compared on the way.
+    """
+    static = load.static
+    if static is not None and isinstance(law.dry, Constant) and static < law.dry.value:
+        what = _("static ({static:.9g}) is at least the value ({value:.9g}): what sticks holds more")
+        raise InputError(
+            f"[[loads]] {label}",
+            what.format(static=static, value=law.dry.value),
+            _("exchange or correct them"),
+        )
+    return Contact(FRICTION, label, along, kinetic=law.dry, static=static, drift=load.surface_speed)
+
+
+def sensed_contact(term: LoadTerm, label: str, where: str) -> Contact:
+    """A load with a force for each sense of a motion: it rubs where that resists, and never sticks where it drives.
+
+    Raises NotComputedYet where it acts along another way than that whose sense counts.
+    """
+    law = term.amount
+    if isinstance(law, LoadDiagram):
+        forwards, backwards = (
+            BrokenLine(tuple((float(row[0]), float(row[column])) for row in law.rows), "x")
+            for column in (1, 2)
+        )
+        return Contact(FRICTION, label, term.coordinate, kinetic=forwards, backwards=backwards)
+    force, gate = term.coordinate, term.gate
+    if isinstance(force, Component) and isinstance(gate, Component) and isinstance(law, Constant):
+        (x, y), (u, v) = force.direction[:2], gate.direction[:2]
+        along = (x * u + y * v) / (hypot(x, y) * hypot(u, v))
+        if force.at == gate.at and force.axes == gate.axes and abs(abs(along) - 1.0) < PARALLEL:
+            size = Constant(law.value * (1.0 if along > 0.0 else -1.0))
+            return Contact(FRICTION, label, gate, kinetic=size, backwards=Constant(0.0))
+    what = _(
+        "a load that acts while a point moves in one sense, across its own line, is not computed by all coordinates"
+    )
+    repair = _("let it act along while_moving with a constant size, or use the reduced equation")
+    raise NotComputedYet(where, what, repair)
+
+
+PARALLEL = 1e-9
+"""Two directions are one where their cosine misses 1 by less."""
+
+
+@dataclass(frozen=True)
+class SmoothFriction:
+    """What of a friction grows with the relative speed: -b (v - s) - c (v - s) |v - s|."""
+
+    viscous: Number
+    quadratic: Number
+    drift: Number
+    uses: frozenset[str] = frozenset("v")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+    energy_class = Friction.energy_class
+    by_place = False
+
+    def __call__(self, now: Any) -> Number:
+        slip = now.v if isinstance(self.drift, float) and self.drift == 0.0 else now.v - self.drift
+        return -self.viscous * slip - self.quadratic * slip * now.m.abs(slip)
+
+
+def row_numbers(contacts: Sequence[Contact]) -> tuple[int, ...]:
+    """Numbers of the contacts that have a row, in the order of their rows."""
+    return tuple(k for k, contact in enumerate(contacts) if contact.has_row)

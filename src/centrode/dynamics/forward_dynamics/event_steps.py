@@ -1,0 +1,773 @@
+"""Events of a motion: found by shortened steps of the integrator itself, and what the modes are behind them.
+
+A guard that has passed zero within a step stops the integrator there. The step is taken again from its beginning, with
+ends between which the guard is zero: so an event has the error of a step of order 8, and none of an interpolant. Then
+impulses follow from the masses that the contacts feel, and what sticks, slips, rests or opens from forces within
+bounds. (F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996, chapters 5 and 8.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf, isnan, nan
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from centrode.dynamics.forward_dynamics.bounded_forces import forces_within, impulses_of_impact
+from centrode.dynamics.forward_dynamics.contacts import (
+    AT_LEAST,
+    AT_MOST,
+    CLAMP,
+    COMPLIANT,
+    FRICTION,
+    STOP,
+    Contact,
+    ContactMode,
+)
+from centrode.dynamics.forward_dynamics.equations_of_motion import DEPENDENT, EquationsOfMotion
+from centrode.dynamics.forward_dynamics.motion_problem import (
+    CONDITION,
+    CONTROLS,
+    GUARD,
+    INDEPENDENCE,
+    LIMIT,
+    NEVER,
+    ROUNDING,
+    TOLERANCE,
+    Guard,
+    MotionNames,
+    guards_of,
+    modes_of,
+)
+from centrode.dynamics.forward_dynamics.motion_steps import (
+    CLOSES,
+    CONDITION_MET,
+    IMPACT,
+    LEAVES,
+    LETS_GO,
+    OPENS,
+    RESTS,
+    SLIPS,
+    STICKS,
+    TOUCHES,
+    Event,
+)
+from centrode.dynamics.load_coordinates import Turn
+from centrode.errors import InputError, MotionError
+from centrode.locale import _
+from centrode.numerics.expressions import EXPRESSIONS, as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.initial_value_problems import (
+    END,
+    HEADER,
+    SMALLEST,
+    TIME,
+    InitialValueProblem,
+)
+from centrode.numerics.integrators import Integrator
+from centrode.numerics.python_functions import Function, python_function
+
+if TYPE_CHECKING:
+    from centrode.dynamics.forward_dynamics.change_points import Detour
+    from centrode.dynamics.forward_dynamics.integration import MotionIntegration
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+_END = CONTROLS.index(END)
+ROOT = 1e-16
+"""Width [s] down to which the instant of an event is sought, as far as digits of the time go."""
+TOUCHING = 1e-10
+"""A gap below this share of the greatest length is closed, a speed below this share of the usual one is none."""
+ACCUMULATED = 2e-5
+"""Impacts that end within this share of the usual time are taken together."""
+SOON = 1e-3
+"""Share of the usual time after which the side of a condition that begins at zero is looked at."""
+LOOKS = 33
+"""Instants on a detour around a change point at which guards are looked at."""
+HALVINGS = 60
+AT_THE_LIMIT = 1e-6
+"""What holds is at its limit where its event says so and this share is not missing."""
+MOST_AT_ONCE = 100
+"""Events one after the other at the same instant, beyond which none of them leads on."""
+
+
+@dataclass(frozen=True)
+class ContactForces:
+    """What contacts feel at one state.
+
+    Attributes
+    ----------
+    values, speeds : of their coordinates (contacts)
+    forwards, backwards : forces that they would have if they slipped
+    free : accelerations of the rows (rows) without forces in them
+    loose : what their own forces would add if no closure held (rows)
+    mobility : (rows, rows), accelerations of the rows by forces along them
+    shifts : (coordinates, rows), changes of the speeds by impulses along the rows
+    reactions : (kept drives, rows), impulses of kept drives by impulses along the rows
+    rates : of the kept drives
+    conditions : values of the user's events
+    """
+
+    values: Array
+    speeds: Array
+    forwards: Array
+    backwards: Array
+    free: Array
+    loose: Array
+    mobility: Array
+    shifts: Array
+    reactions: Array
+    rates: Array
+    conditions: Array
+
+
+def contact_function(
+    equations: EquationsOfMotion, names: MotionNames, problem: InitialValueProblem
+) -> Function:
+    """What contacts feel, as a function of time, parameters and what is carried."""
+    m, tree = EXPRESSIONS, equations.tree
+    modes = [
+        # friction that slips is a force of its own here, what is closed has none
+        ContactMode(mode.active if contact.kind == COMPLIANT else 0.0, 0.0, 0.0)
+        for contact, mode in zip(equations.contacts, modes_of(names, variable) or (), strict=True)
+    ]
+    values = tree.values(m, [variable(name) for name in names.coordinates])
+    speeds = [variable(name) for name in names.speeds]
+    terms = equations.terms(m, values, speeds, variable(TIME), modes, [variable(x) for x in names.states])
+    count = equations.equations
+    rows, bias = terms.rows[count:], terms.bias[count:]
+    system = equations.system(m, terms.without_contacts(count))
+    moved, _forces = system.solve(system.force, terms.bias[:count])
+    still = [0.0] * count
+    outputs: dict[str, Any] = {}
+    for k, one in enumerate(terms.measures):
+        outputs |= {f"value {k}": one.value, f"speed {k}": one.speed}
+        outputs |= {f"forwards {k}": one.forwards, f"backwards {k}": one.backwards}
+    for i, row in enumerate(rows):
+        outputs[f"free {i}"] = _product(row, moved) + bias[i]
+        alone = system.mass.forward(row)
+        outputs[f"loose {i}"] = system.mass.product(alone, alone)
+        shift, forces = system.solve(row, still)
+        outputs |= {f"mobility {i} {j}": _product(other, shift) for j, other in enumerate(rows)}
+        outputs |= {f"shift {i} {k}": shift.get(k, 0.0) for k in range(equations.size)}
+        first = count - len(equations.kept)
+        outputs |= {f"reaction {i} {k}": forces.get(first + k, 0.0) for k in range(len(equations.kept))}
+    outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
+    outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
+    graph = Graph({name: as_node(x) for name, x in outputs.items()})
+    return python_function(graph, [TIME, *problem.parameters, *problem.carried])
+
+
+@dataclass
+class EventWatch:
+    """Finds events of one motion, and sets the modes behind them.
+
+    Attributes
+    ----------
+    integration : what takes the steps
+    take : the integrator
+    parameters : (parameters, 1) of its steps
+    rate : what speeds are compared with [1/s]
+    events : what has happened
+    """
+
+    integration: MotionIntegration
+    take: Integrator
+    parameters: Array
+    rate: float
+    events: list[Event] = field(default_factory=list)
+    _at_once: int = 0
+    _last: float = -inf
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Contacts with their numbers."""
+        return self.integration.equations.contacts
+
+    @cached_property
+    def guards(self) -> tuple[Guard, ...]:
+        """Guards in their order."""
+        return guards_of(self.integration.equations)
+
+    @cached_property
+    def _rows(self) -> dict[int, int]:
+        """Number of a contact -> its row among those of contacts."""
+        rows = self.integration.equations.contact_rows
+        return {number: row - rows[0][0] for row, number in rows}
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Place of what is carried in a state."""
+        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried)}
+
+    @cached_property
+    def _guard_rows(self) -> Array:
+        return np.array([self._places[name] for name in self.integration.names.guards], dtype=np.intp)
+
+    @cached_property
+    def units(self) -> Array:
+        """What coordinates of contacts are compared with: 1 rad, or the greatest length."""
+        scale = float(self.integration.equations.numbers.scale)
+        return np.array([1.0 if isinstance(c.coordinate, Turn) else scale for c in self.contacts])
+
+    @cached_property
+    def _numbers(self) -> list[float]:
+        return [float(x) for x in self.parameters[:, 0]]
+
+    def _feel(self, time: float, carried: Sequence[float]) -> ContactForces:
+        equations = self.integration.equations
+        found = self.integration.contact_function([time, *self._numbers, *carried])
+        count, rows, size, kept = (
+            len(self.contacts),
+            len(self._rows),
+            equations.size,
+            len(equations.kept),
+        )
+        numbers = np.array(found, dtype=np.float64)
+        own = numbers[: 4 * count].reshape(count, 4)
+        width = 2 + rows + size + kept
+        by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
+        rest = numbers[4 * count + rows * width :]
+        return ContactForces(
+            own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1], by_row[:, 2 : 2 + rows],
+            by_row[:, 2 + rows : 2 + rows + size].T, by_row[:, 2 + rows + size :].T,
+            rest[:kept], rest[kept:],
+        )  # fmt: skip
+
+    # the start
+
+    def begin(self, state: Array) -> Array:
+        """The state at the start with its modes.
+
+        Raises InputError where a stop is violated there, or what is clamped moves.
+        """
+        carried = [float(x) for x in state[HEADER:, 0]]
+        felt = self._feel(float(state[0, 0]), carried)
+        for k, contact in enumerate(self.contacts):
+            value, tolerance = float(felt.values[k]), TOUCHING * self.units[k]
+            for bound, sign in ((contact.least, -1.0), (contact.most, 1.0)):
+                if bound is not None and sign * (bound - value) < -tolerance:
+                    what = _("it is at {value:.9g} at the start, beyond its bound {bound:.9g}")
+                    repair = _("move the start, or correct the bound")
+                    where = f"[[stops]] {contact.label}"
+                    raise InputError(where, what.format(value=value, bound=bound), repair)
+            if contact.kind == CLAMP:
+                if abs(float(felt.speeds[k])) > TOUCHING * self.units[k] * self.rate:
+                    what = _("it moves at the start, and is clamped")
+                    raise InputError(
+                        f"[[clamps]] {contact.label}", what, _("give it no speed, or remove the clamp")
+                    )
+                self._set(state, "active", k, 1.0)
+                self._set(state, "held", k, value)
+        started = self._behind(state, frozenset())
+        if self.integration.names.sides:
+            # what begins at zero is on the side to which it goes
+            row = np.concatenate([started[:1, 0], started[HEADER:, 0]])
+            soon = self._step_to(row, float(row[0]) + SOON / self.rate)
+            later = self._feel(float(soon[0, 0]), soon[HEADER:, 0].tolist()).conditions
+            for k, value in enumerate(felt.conditions):
+                side = float(np.sign(value if abs(value) > ROUNDING else later[k])) or 1.0
+                started[self._places[self.integration.names.sides[k]], 0] = side
+        return started
+
+    def _set(self, state: Array, what: str, number: int, value: float) -> None:
+        names = {"active": "active", "sense": "senses", "held": "held"}
+        state[self._places[getattr(self.integration.names, names[what])[number]], 0] = value
+
+    def _get(self, state: Array, what: str, number: int) -> float:
+        names = {"active": "active", "sense": "senses", "held": "held"}
+        return float(state[self._places[getattr(self.integration.names, names[what])[number]], 0])
+
+    # where it is
+
+    def locate(self, before: Array, state: Array) -> tuple[Array, frozenset[int]]:
+        """The state at the first event between a row before a step and the state behind it, and its guards.
+
+        `before` (1 + carried) has the time first.
+        """
+        begin, end = float(before[0]), float(state[0, 0])
+        passed = np.flatnonzero(state[self._guard_rows, 0] < 0.0)
+        rows = self._guard_rows[passed]
+        start, found, attempt = self._trial
+        self._put(start, before)
+        ends = self._of_one_step[_END]
+        watched = [int(row) for row in rows]
+        column = found[:, 0]
+
+        def at(time: float) -> float:
+            if not time > begin:
+                return 1.0
+            ends[0] = time
+            attempt()
+            return float(min(column.item(row) for row in watched))
+
+        low = begin
+        if float(np.min(before[rows - HEADER + 1])) <= 0.0:
+            # a guard that begins at zero rises first, where it does not pass it at once
+            low = end
+            for _halving in range(HALVINGS):
+                low = begin + 0.5 * (low - begin)
+                if not low > begin or at(low) > 0.0:
+                    break
+            else:
+                low = begin
+            if not low > begin:
+                return start.copy(), frozenset(int(k) for k in passed)
+        final = end
+        if low < end:
+            final = float(brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
+        if not final > begin:
+            return start.copy(), frozenset(int(k) for k in passed)
+        at(final)
+        least = found[rows, 0]
+        due = [int(k) for k, value in zip(passed, least, strict=True) if value <= self._due_below(int(k))]
+        if not due:
+            due = [int(passed[int(np.argmin(least))])]
+        return found.copy(), frozenset(due)
+
+    def _due_below(self, number: int) -> float:
+        """What of a guard at an event is still that of rounding."""
+        guard = self.guards[number]
+        if guard.kind == CONDITION:
+            return 0.0
+        unit = float(self.units[guard.number])
+        if guard.kind == FRICTION:
+            return 0.0
+        return 1e-14 * unit
+
+    @cached_property
+    def _of_one_step(self) -> Array:
+        """Parameters of a step that is taken whatever its error."""
+        parameters = self.parameters.copy()
+        parameters[CONTROLS.index(TOLERANCE)] = inf
+        parameters[CONTROLS.index(SMALLEST)] = 0.0
+        return parameters
+
+    @cached_property
+    def _trial(self) -> tuple[Array, Array, Callable[[], None]]:
+        """A state, the one behind an attempt from it, and the attempt."""
+        count = HEADER + len(self.integration.problem.carried)
+        start, found = np.zeros((count, 1)), np.zeros((count, 1))
+        return start, found, self.take.attempt_of(self._of_one_step, start, found)
+
+    def _put(self, state: Array, before: Array) -> None:
+        """Put a row (1 + carried) into a state from which one step is to be taken."""
+        state[:HEADER, 0] = before[0], inf, 0.0, 0.0
+        state[HEADER:, 0] = before[1:]
+        state[self._places[GUARD]] = 0.0
+        limit = self._places.get(LIMIT)
+        if limit is not None:
+            state[limit] = NEVER
+
+    def _step_to(self, before: Array, time: float) -> Array:
+        """The state at a time, by one step from a row before it."""
+        start, found, attempt = self._trial
+        self._put(start, before)
+        if not time > before[0]:
+            return start.copy()
+        self._of_one_step[_END] = time
+        attempt()
+        return found.copy()
+
+    def clear_until(self, detour: Detour, carried: Array) -> float | None:
+        """The end of a detour around a change point, or an instant behind the point before which nothing happens [s].
+
+        None where something happens before the change point itself.
+        """
+        problem, last = self.integration.problem, detour.centre
+        count = len(problem.unknowns)
+        for time in np.linspace(detour.begin, detour.end, LOOKS)[1:]:
+            there = [*detour.at(np.array([time]))[:, 0], *carried[count:]]
+            closed = self.integration.closing_function([float(time), 1.0, *self._numbers, *there])
+            guards = [closed[row - HEADER] for row in self._guard_rows]
+            if min(guards, default=0.0) < 0.0:
+                return last if last > detour.centre else None
+            last = float(time)
+        return float(detour.end)
+
+    # what follows
+
+    def pass_event(self, before: Array, state: Array, size: float) -> tuple[Array, Array, bool]:
+        """The row at an event, the state behind it, and whether it ends the motion.
+
+        Parameters
+        ----------
+        before : (1 + carried), the row before the step within which it is
+        state : behind that step
+        size : of the next step
+        """
+        found, due = self.locate(before, state)
+        time = float(found[0, 0])
+        self._at_once = self._at_once + 1 if time <= self._last else 0
+        self._last = time
+        if self._at_once > MOST_AT_ONCE:
+            what = _("at {time:.9g} s events follow one another without end").format(time=time)
+            raise MotionError("[simulation]", what, _("look at the stops and frictions there"))
+        row = np.concatenate([[time], found[HEADER:, 0]])
+        ends = False
+        for number in due:
+            guard = self.guards[number]
+            if guard.kind == CONDITION:
+                ends = self._meet_condition(found, guard.number) or ends
+        behind = self._behind(found, due)
+        behind[1, 0] = size
+        return row, behind, ends
+
+    def _meet_condition(self, state: Array, number: int) -> bool:
+        condition = self.integration.equations.conditions[number]
+        place = self._places[self.integration.names.sides[number]]
+        time = float(state[0, 0])
+        self.events.append(Event(time, CONDITION_MET, nan, condition.label))
+        state[place] = -state[place]
+        for k, contact in enumerate(self.contacts):
+            if contact.kind == CLAMP and contact.until == condition.label:
+                self.let_go(state, k)
+        return condition.ends
+
+    def let_go(self, state: Array, number: int) -> None:
+        """Open a clamp."""
+        if self._get(state, "active", number):
+            self._set(state, "active", number, 0.0)
+            self.events.append(Event(float(state[0, 0]), LETS_GO, nan, self.contacts[number].label))
+
+    def next_release(self, time: float, end: float) -> float:
+        """The next instant at which a clamp lets go, or the end [s]."""
+        times = [c.until for c in self.contacts if c.kind == CLAMP and isinstance(c.until, float)]
+        return min([one for one in times if time < one < end], default=end)
+
+    def release(self, state: Array, time: float) -> Array:
+        """The state behind the instant at which clamps let go."""
+        for k, contact in enumerate(self.contacts):
+            if contact.kind == CLAMP and isinstance(contact.until, float) and contact.until <= time:
+                self.let_go(state, k)
+        return self._behind(state, frozenset())
+
+    def _behind(self, state: Array, due: frozenset[int]) -> Array:
+        """The state with speeds behind impacts, and modes that fit its forces."""
+        state = state.copy()
+        time = float(state[0, 0])
+        guards = [self.guards[k] for k in due]
+        # a stop that has been pressed opens, a contact that has stuck slips
+        let_go = {
+            guard.number
+            for guard in guards
+            if guard.kind != CONDITION and self._get(state, "active", guard.number)
+        }
+        # a flight that is too low to be told from rounding is none
+        grounded = {guard.number for guard in guards if guard.kind == STOP} if self._at_once > 1 else set()
+        felt = self._impact(state, self._feel(time, state[HEADER:, 0].tolist()), grounded)
+        for guard in guards:
+            contact = self.contacts[guard.number] if guard.kind != CONDITION else None
+            if contact is not None and contact.kind == COMPLIANT:
+                pressed = self._get(state, "active", guard.number) != 0.0
+                self._set(state, "active", guard.number, 0.0 if pressed else guard.bound)
+                kind = LEAVES if pressed else TOUCHES
+                self.events.append(Event(time, kind, nan, contact.label))
+                felt = self._feel(time, state[HEADER:, 0].tolist())
+        comes = {guard.number for guard in guards if guard.kind == FRICTION} - let_go
+        self._choose_modes(state, felt, let_go, comes)
+        return self._closed(state)
+
+    def _closed(self, state: Array) -> Array:
+        """The state with everything that follows from its modes."""
+        problem = self.integration.problem
+        carried = [float(x) for x in state[HEADER:, 0]]
+        if INDEPENDENCE in problem.carried:
+            carried[problem.carried.index(INDEPENDENCE)] = 0.0
+        closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
+        state[HEADER:, 0] = closed
+        # what is passed already is none: a guard at zero counts from there on
+        rows = self._guard_rows
+        state[rows, 0] = np.maximum(state[rows, 0], 0.0)
+        if state[self._places[GUARD], 0] >= 2.0:
+            state[self._places[GUARD]] -= 2.0
+        return state
+
+    # impacts
+
+    def _touching(self, felt: ContactForces, number: int, bound: float) -> bool:
+        contact = self.contacts[number]
+        level = contact.least if bound < 0.0 else contact.most
+        if level is None:
+            return False
+        return bool(bound * (level - felt.values[number]) <= TOUCHING * self.units[number])
+
+    def _impact(self, state: Array, felt: ContactForces, grounded: set[int]) -> ContactForces:
+        """Impulses of stops that are hit, or to which what is `grounded` returns at once; what contacts feel then."""
+        hits: dict[int, float] = {}
+        holding: dict[int, float] = {}
+        for k in self._rows:
+            contact = self.contacts[k]
+            if contact.kind == CLAMP and self._get(state, "active", k):
+                holding[k] = 0.0
+            if contact.kind != STOP:
+                continue
+            for bound in (AT_LEAST, AT_MOST):
+                speed = -bound * float(felt.speeds[k])
+                slow = TOUCHING * self.units[k] * self.rate
+                if not self._touching(felt, k, bound):
+                    continue
+                if speed < -slow or (k in grounded and speed > slow):
+                    hits[k] = bound
+                elif speed <= slow:
+                    holding[k] = bound
+        if not hits:
+            return felt
+        time, taken = float(state[0, 0]), hits | holding
+        numbers = list(taken)
+        rows = [self._rows[k] for k in numbers]
+        signs = np.array([-taken[k] or 1.0 for k in numbers])
+        is_stop = np.array([self.contacts[k].kind == STOP for k in numbers])
+        matrix = signs[:, None] * felt.mobility[np.ix_(rows, rows)] * signs
+        before = signs * felt.speeds[numbers]
+        before[[k not in hits for k in numbers]] = 0.0
+        restitution = [self.contacts[k].restitution for k in numbers]
+        impulses, after = impulses_of_impact(matrix, before, restitution, is_stop)
+        self._apply(state, felt, numbers, signs * impulses, 0.5 * impulses * (before + after))
+        settled: dict[int, float] = {}
+        behind = self._feel(time, state[HEADER:, 0].tolist())
+        for k in numbers:
+            if k in hits:
+                settled[k] = 0.0 if k in grounded else self._rest_of_impacts(state, behind, k, hits[k])
+        resting = [place for place, k in enumerate(numbers) if not isnan(settled.get(k, nan))]
+        if resting:
+            # the rest of infinitely many impacts at once: their sum is that of one without restitution
+            now, more = signs * behind.speeds[numbers], np.zeros(len(numbers))
+            own = matrix[np.ix_(resting, resting)]
+            more[resting] = np.linalg.lstsq(own, -now[resting], rcond=1e-11)[0]
+            then = now + matrix @ more
+            self._apply(state, behind, numbers, signs * more, 0.5 * more * (now + then))
+            behind = self._feel(time, state[HEADER:, 0].tolist())
+        for place, k in enumerate(numbers):
+            if k not in hits and impulses[place] <= 0.0:
+                continue
+            if self.contacts[k].kind != STOP:
+                continue
+            lost = -0.5 * float(impulses[place] * (before[place] + after[place]))
+            label = self.contacts[k].label
+            self.events.append(Event(time, IMPACT, nan, label, float(impulses[place]), lost))
+            if not isnan(settled.get(k, nan)):
+                self.events.append(Event(time + settled[k], RESTS, nan, label))
+                self._set(state, "active", k, taken[k])
+        return behind
+
+    def _apply(
+        self, state: Array, felt: ContactForces, numbers: Sequence[int], impulses: Array, works: Array
+    ) -> None:
+        """Change speeds by impulses along rows, and note the works of both."""
+        names, rows = self.integration.names, [self._rows[k] for k in numbers]
+        first = self._places[names.speeds[0]]
+        state[first : first + len(names.speeds), 0] += felt.shifts[:, rows] @ impulses
+        works_at = [self._places[name] for name in names.works]
+        count, kept = len(self.contacts), len(felt.rates)
+        driven = len(self.integration.equations.controls)
+        for k, work in zip(numbers, works, strict=True):
+            state[works_at[len(works_at) - count + k], 0] += work
+        if kept:
+            given = felt.reactions[:, rows] @ impulses
+            for k in range(kept):
+                state[works_at[len(works_at) - count - driven - kept + k], 0] -= given[k] * felt.rates[k]
+
+    def _rest_of_impacts(self, state: Array, felt: ContactForces, number: int, bound: float) -> float:
+        """Time [s] in which impacts that get ever smaller come to an end; NaN where that is not at once."""
+        speed = -bound * float(felt.speeds[number])
+        restitution = self.contacts[number].restitution
+        if restitution >= 1.0:
+            return nan
+        if speed <= TOUCHING * self.units[number] * self.rate:
+            return 0.0
+        free = -bound * self._acceleration(state, felt, number)
+        if not free < 0.0:
+            return nan
+        whole = -2.0 * speed / free / (1.0 - restitution)
+        return whole if whole * self.rate < ACCUMULATED else nan
+
+    def _acceleration(self, state: Array, felt: ContactForces, number: int) -> float:
+        """Acceleration of a contact's coordinate with the forces of all others."""
+        held = [k for k in self._rows if k != number and self._get(state, "active", k)]
+        right = self._slipping(state, felt)
+        row = self._rows[number]
+        if not held:
+            return float(right[row])
+        rows = [self._rows[k] for k in held]
+        forces = np.linalg.lstsq(felt.mobility[np.ix_(rows, rows)], -right[rows], rcond=1e-11)[0]
+        return float(right[row] + felt.mobility[row, rows] @ forces)
+
+    def _slipping(self, state: Array, felt: ContactForces) -> Array:
+        """Accelerations of the rows with the friction of what slips."""
+        forces = np.zeros(len(self._rows))
+        for k, row in self._rows.items():
+            if self.contacts[k].kind == FRICTION:
+                sense = self._get(state, "sense", k)
+                forces[row] = felt.forwards[k] if sense > 0.0 else felt.backwards[k] if sense < 0.0 else 0.0
+        return felt.free + felt.mobility @ forces
+
+    # modes
+
+    def _choose_modes(self, state: Array, felt: ContactForces, let_go: set[int], comes: set[int]) -> None:
+        """What sticks, slips, is closed or opens, by the forces that would hold it.
+
+        What is in `let_go` is at the limit of its force; what is in `comes` has come to rest on its surface.
+        """
+        held: dict[int, float] = {}
+        before = {k: self._get(state, "active", k) for k in self._rows}
+        rested: set[int] = set()
+        for k in self._rows:
+            contact, active = self.contacts[k], before[k]
+            slow = TOUCHING * self.units[k] * self.rate
+            if contact.kind == CLAMP:
+                if active:
+                    held[k] = 0.0
+            elif contact.kind == FRICTION:
+                slip = float(felt.speeds[k]) - contact.drift
+                if abs(slip) <= slow or k in comes:
+                    held[k] = 0.0
+                    if k not in comes:
+                        rested.add(k)
+                self._set(state, "sense", k, 0.0 if k in held else float(np.sign(slip)))
+            else:
+                for bound in (AT_LEAST, AT_MOST):
+                    opens = active == bound and k in let_go
+                    rests = abs(float(felt.speeds[k])) <= slow
+                    if rests and not opens and self._touching(felt, k, bound):
+                        held[k] = bound
+        forces = self._held_forces(state, felt, held, let_go)
+        time = float(state[0, 0])
+        for k in self._rows:
+            contact, active = self.contacts[k], before[k]
+            if contact.kind == FRICTION:
+                self._set(state, "active", k, 1.0 if k in forces else 0.0)
+                if k in forces and not active:
+                    self._set(state, "held", k, float(felt.values[k]) - contact.drift * time)
+                # what others hold is at rest too, whatever its own friction does
+                stays = k in forces or (k in held and self._is_implied(felt, k, forces))
+                was = bool(active) or k in rested
+                if stays is not was and time > 0.0:
+                    self.events.append(Event(time, STICKS if stays else SLIPS, nan, contact.label))
+            elif contact.kind == STOP:
+                self._choose_mode_of_stop(state, k, held.get(k, 0.0) if k in forces else 0.0, active)
+
+    def _choose_mode_of_stop(self, state: Array, number: int, bound: float, before: float) -> None:
+        contact, time = self.contacts[number], float(state[0, 0])
+        self._set(state, "active", number, bound)
+        if bound:
+            level = contact.least if bound < 0.0 else contact.most
+            assert level is not None
+            self._set(state, "held", number, float(level))
+        if bool(bound) is not bool(before) and (before or time > 0.0):
+            self.events.append(Event(time, CLOSES if bound else OPENS, nan, contact.label))
+
+    def _held_forces(
+        self,
+        state: Array,
+        felt: ContactForces,
+        held: dict[int, float],
+        let_go: set[int],
+    ) -> dict[int, float]:
+        """Forces of what goes on to be held, by contacts; what slips gets its sense."""
+        # what closures hold already needs no force
+        fast = {k for k in held if self._follows(felt, self._rows[k], [])}
+        held = {k: bound for k, bound in held.items() if k not in fast}
+        found = {k: 0.0 for k in fast if self.contacts[k].kind != STOP}
+        for k in [one for one in held if one in let_go and self.contacts[one].kind == FRICTION]:
+            force = self._force_alone(state, felt, k, held)
+            least, most = self._bounds(felt, k)
+            near = AT_THE_LIMIT * (most - least)
+            if force >= most - near or force <= least + near:
+                self._set(state, "sense", k, -1.0 if force >= most - near else 1.0)
+                del held[k]
+        while held:
+            numbers = list(held)
+            rows = [self._rows[k] for k in numbers]
+            right = self._slipping(state, felt)
+            low, high = np.array([self._bounds(felt, k, held[k]) for k in numbers]).T
+            forces, rest = forces_within(felt.mobility[rows][:, rows], right[rows], low, high)
+            slipping = self._first_to_slip(numbers, forces, rest, (low, high), felt)
+            if slipping is None:
+                found |= {
+                    k: float(force)
+                    for k, force in zip(numbers, forces, strict=True)
+                    if self.contacts[k].kind != STOP or force != 0.0
+                }
+                break
+            k, sense = slipping
+            self._set(state, "sense", k, sense)
+            del held[k]
+        return found
+
+    def _bounds(self, felt: ContactForces, number: int, bound: float = 0.0) -> tuple[float, float]:
+        """Least and greatest force of a contact that is held."""
+        contact = self.contacts[number]
+        if contact.kind == CLAMP:
+            return -inf, inf
+        if contact.kind == STOP:
+            # pushed down from a bound above, up from one below
+            return (-inf, 0.0) if bound > 0.0 else (0.0, inf)
+        least, most = sorted((float(felt.forwards[number]), float(felt.backwards[number])))
+        if contact.static is not None:
+            least, most = min(-float(contact.static), least), max(float(contact.static), most)
+        return least, most
+
+    def _force_alone(self, state: Array, felt: ContactForces, number: int, held: dict[int, float]) -> float:
+        """The force of a contact where others that hold the same thing leave everything to it, as the steps do."""
+        rows, right = [self._rows[number]], self._slipping(state, felt)
+        for k in held:
+            if k != number and not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return float(np.linalg.solve(felt.mobility[rows][:, rows], -right[rows])[0])
+
+    def _is_implied(self, felt: ContactForces, number: int, others: Iterable[int]) -> bool:
+        """Whether a contact cannot move where others hold."""
+        rows: list[int] = []
+        for k in others:
+            if not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return self._follows(felt, self._rows[number], rows)
+
+    def _follows(self, felt: ContactForces, row: int, rows: list[int]) -> bool:
+        """Whether a row follows from closures and independent other rows, as far as the steps tell them apart."""
+        pivot = float(felt.mobility[row, row])
+        if rows:
+            along = np.linalg.solve(felt.mobility[rows][:, rows], felt.mobility[rows, row])
+            pivot -= float(felt.mobility[row, rows] @ along)
+        return bool(pivot <= DEPENDENT * felt.loose[row])
+
+    def _first_to_slip(
+        self,
+        numbers: Sequence[int],
+        forces: Array,
+        rest: Array,
+        bounds: tuple[Array, Array],
+        felt: ContactForces,
+    ) -> tuple[int, float] | None:
+        """The first friction that does not hold, and the sense in which it slips; None where all hold."""
+        low, high = bounds
+        for place, k in enumerate(numbers):
+            if self.contacts[k].kind != FRICTION:
+                continue
+            force, least, most = float(forces[place]), float(low[place]), float(high[place])
+            if felt.forwards[k] > felt.backwards[k]:
+                # what drives either way holds nowhere
+                return k, 1.0 if rest[place] >= 0.0 else -1.0
+            if force >= most:
+                # pushed forwards as much as can be: it goes backwards
+                return k, -1.0 if most > least or rest[place] <= 0.0 else 1.0
+            if force <= least:
+                return k, 1.0
+        return None
+
+
+def _product(one: Any, other: Any) -> Any:
+    total: Any = 0.0
+    for k, x in one.items():
+        if k in other:
+            total = total + x * other[k]
+    return total
+
+
+Progress: TypeAlias = Callable[[float], None]

@@ -1,0 +1,94 @@
+"""Regimes of machines by their return maps: against the reduced equation, closed forms and Liouville's formula."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.dynamics.forward_dynamics.free_motion import free_motion_of
+from centrode.dynamics.sensitivities.return_map import PeriodicMotion, periodic_motion
+from centrode.dynamics.simulation.multibody_motion import multibody_setting
+from centrode.dynamics.simulation.results import simulation_results
+from centrode.dynamics.simulation.steady_state import steady_regime
+
+
+def machine(**simulation: object) -> ct.Mechanism:
+    """A four-bar with a motor and a damper."""
+    rods = {name: {"length": length, "mass": mass, "shape": "rod"} for name, length, mass in
+            (("AB", 0.3, 3.0), ("BC", 0.8, 0.8), ("DC", 0.6, 0.6))}  # fmt: skip
+    return ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"A": [0, 0], "D": [0.9, 0]}},
+        links=rods,
+        drives=[{"link": "AB", "start": 1.0, "speed": 1}],
+        assembly={"sides": {"C": "left"}},
+        loads=[{"kind": "damper", "link": "DC", "damping": 0.05}],
+        simulation={"driving": "4 - 0.2*v", "speed": 18, "duration": "5 s", **simulation},
+    )
+
+
+def regime_of(mechanism: ct.Mechanism, run_in: float) -> PeriodicMotion:
+    assert mechanism.simulation is not None
+    setting = multibody_setting(mechanism, mechanism.simulation)
+    return periodic_motion(setting.free, setting.free.initial(setting.speeds, setting.start), run_in)
+
+
+def test_machine_of_one_drive_has_the_regime_of_the_reduced_equation() -> None:
+    reduced, whole = steady_regime(machine()), regime_of(machine(), 5.0)
+    assert math.isclose(whole.period, reduced.time, rel_tol=1e-8)
+    assert math.isclose(whole.mean_speed, reduced.mean_speed, rel_tol=1e-8)
+    # that of the reduced equation is a difference of 1e-5
+    assert math.isclose(float(whole.multipliers[0].real), reduced.multiplier, rel_tol=1e-4)
+    assert whole.stable
+
+
+def test_pendulum_on_a_crank_follows_it_and_its_multipliers_obey_liouville() -> None:
+    crank = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={
+            "OA": {"length": 0.1, "mass": 1, "shape": "rod", "angle": 0},
+            "AB": {"length": 1.0, "mass": 1, "shape": "rod", "angle": "-90 deg"},
+        },
+        drives=[{"link": "OA", "start": 0, "speed": 7.0}],
+        loads=[{"kind": "damper", "link": "AB", "damping": 0.5}],
+        simulation={"keeps": ["OA"], "duration": "20 s"},
+    )
+    found = regime_of(crank, 20.0)
+    assert math.isclose(found.period, 2 * math.pi / 7.0, rel_tol=1e-14)
+    # J x'' + c x' + ... = 0: what is left of an area of states after a period is exp(-c T / J)
+    left = math.exp(-0.5 * found.period / (1 / 3))
+    assert math.isclose(float(np.prod(found.multipliers).real), left, rel_tol=1e-8)
+    assert found.stable and found.turns.tolist() == [1.0, 0.0]
+    # it does come back
+    free = found.free
+    run = free.integrate(found.start, found.period, 1e-11, at=[found.period])
+    apart = run.coordinates[0] - found.start.coordinates - 2 * math.pi * found.turns
+    assert np.abs(apart).max() < 1e-8
+
+
+def test_a_rod_that_swings_back_has_no_regime() -> None:
+    rod = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1, "mass": 1, "shape": "rod", "angle": 0}},
+        loads=[{"kind": "damper", "link": "OA", "damping": 0.1}],
+    )
+    free = free_motion_of(rod)
+    with pytest.raises(ct.MotionError, match="nothing turns all the way round"):
+        periodic_motion(free, free.initial(), 3.0)
+
+
+def test_simulation_tells_its_regime_and_how_long_it_takes_to_run_up() -> None:
+    results = simulation_results(machine(speed=2, duration="8 s", equations="multibody", samples=2001))
+    assert results.periodic is not None
+    time = results.run_up_time
+    assert time is not None
+    # deviations of the speed die away by the multiplier each period: from nine tenths to a hundredth
+    periods = math.log(0.01 / 0.9) / math.log(float(results.periodic.multipliers[0].real))
+    assert abs(time / results.periodic.period - periods) < 4
+    text = ct.summary(results)
+    assert "steady regime" in text and "run-up" in text

@@ -1,0 +1,1 @@
+"""Random mechanisms with stops and dry friction against time steps that seek no event."""

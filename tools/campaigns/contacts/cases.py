@@ -1,0 +1,196 @@
+"""Random mechanisms with walls and friction by events, against time steps of three lengths."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+import centrode as ct
+from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.trajectory import Trajectory
+from tools.campaigns.campaign import Campaign, Outcome, random_of
+from tools.campaigns.contacts.time_steps import Rubbing, Run, Wall, run_steps
+from tools.campaigns.free_motions.cases import GRAVITY, hung, rods, weight_times_length, with_rollers
+from tools.campaigns.free_motions.dense_equations import DenseMechanism
+from tools.campaigns.grown.plane import KINDS, grown
+
+Parts = dict[str, Any]
+DURATION, COARSE = 0.5, 160
+"""Seconds, and equal steps of the longest kind."""
+TOLERANCE = 1e-11
+BOOKS, GAINED, SUNK = 1e-9, 1e-12, 1e-11
+NEAR, FALLS = 2e-2, 0.75
+"""How near the shortest steps come to ours, of the length, and to which share of the longest ones' distance."""
+FINE = 2e-4
+"""Below this distance errors of time steps need not fall: they cancel by chance."""
+CLEAR = 0.15
+"""Impacts slower than this [m/s] may be two of ours, or none."""
+
+
+def drawn(random: np.random.Generator) -> tuple[str, Parts]:
+    """A planar mechanism of rods that falls, with pendulums in half of all cases."""
+    seed = int(random.integers(2**32))
+    parts = grown(random.choice(KINDS, int(random.integers(1, 4))).tolist(), seed)
+    with_rollers(parts)
+    row = "dyads"
+    if random.random() < 0.5:
+        hung(parts, random, 1)
+        row = "several"
+    rods(parts)
+    parts["gravity"] = [0.0, -GRAVITY]
+    return row, parts
+
+
+def with_contacts(
+    parts: Parts, random: np.random.Generator, free: FreeMotion
+) -> tuple[Parts, list[Wall], list[Rubbing]]:
+    """The mechanism with one or two walls that its points fall against, and friction of one or two links."""
+    swung = free.integrate(free.initial(), DURATION, 1e-8, samples=26)
+    walls, stops = [], []
+    moving = [name for name in free.points if name not in parts["frame"]["points"]]
+    for number in range(int(random.integers(1, 3))):
+        name = str(random.choice(moving))
+        way = swung.places[:, free.points.index(name)]
+        if len(way) < 5:
+            continue
+        there = way[int(random.integers(3, len(way)))] - way[0]
+        size = float(np.hypot(*there))
+        if size < 1e-2:
+            continue
+        direction = (float(there[0] / size), float(there[1] / size))
+        most = float(direction @ way[0]) + size * float(random.uniform(0.3, 0.8))
+        restitution = round(float(random.uniform(0.0, 0.9)), 2)
+        walls.append(Wall(name, direction, most, restitution))
+        stops.append(
+            {
+                "name": f"wall {number}",
+                "point": name,
+                "direction": list(direction),
+                "most": most,
+                "restitution": restitution,
+            }
+        )
+    rubbing, loads = [], []
+    for body in random.permutation(list(parts["links"]))[: int(random.integers(1, 3))].tolist():
+        kinetic = weight_times_length(free) * float(random.uniform(0.0005, 0.02))
+        static = kinetic * float(random.choice([1.0, 1.3]))
+        rubbing.append(Rubbing(body, "frame", kinetic, static))
+        loads.append({"kind": "friction", "link": body, "value": kinetic, "static": static})
+    return parts | {"stops": stops, "loads": loads}, walls, rubbing
+
+
+def run(seed: int, number: int) -> Outcome:
+    """One mechanism by events, and by time steps of three lengths."""
+    random = random_of(seed, number)
+    row, plain = drawn(random)
+    free = free_motion_of(ct.Mechanism(**plain))
+    parts, walls, rubbing = with_contacts(plain, random, free)
+    outcome = Outcome(subject=repr(parts))
+    watched = free_motion_of(ct.Mechanism(**parts))
+    course = watched.integrate(watched.initial(), DURATION, TOLERANCE, at=np.linspace(0.0, DURATION, 201))
+    if course.ended != "duration":
+        outcome.count(f"ended by {course.ended}")
+        return outcome
+    scale = weight_times_length(free)
+    outcome.hold(row, "books", float(np.max(np.abs(course.energy_residual))) / scale, BOOKS)
+    gains = [-event.lost for event in course.events if event.kind == "impact"]
+    outcome.hold(row, "gain", max(gains, default=0.0) / scale, GAINED)
+    outcome.hold(row, "sunk", sunk(watched, course, walls), SUNK)
+    for kind in ("impact", "comes to rest", "sticks", "slips", "opens"):
+        outcome.count(kind, sum(event.kind == kind for event in course.events))
+    compare(outcome, row, watched, course, parts, walls, rubbing)
+    return outcome
+
+
+def sunk(free: FreeMotion, course: Trajectory, walls: list[Wall]) -> float:
+    """How far a point has sunk into its wall, of the greatest length."""
+    deepest = 0.0
+    for wall in walls:
+        way = course.places[:, free.points.index(wall.point)] @ np.array(wall.direction)
+        deepest = max(deepest, float(np.max(way - wall.most)))
+    return deepest / max(1.0, float(free.equations.numbers.scale))
+
+
+def compare(
+    outcome: Outcome,
+    row: str,
+    free: FreeMotion,
+    course: Trajectory,
+    parts: Parts,
+    walls: list[Wall],
+    rubbing: list[Rubbing],
+) -> None:
+    """Distances of time steps from the motion by events, and what happened in both."""
+    dense = DenseMechanism(
+        parts,
+        dict(zip(free.points, course.places[0], strict=True)),
+        dict(zip(free.links, course.angles[0], strict=True)),
+    )
+    runs = [run_steps(dense, walls, rubbing, DURATION, COARSE * times) for times in (1, 2, 4)]
+    length = max(1.0, float(free.equations.numbers.scale))
+    apart = [distance(dense, free, course, one) / length for one in runs]
+    outcome.count("compared with time steps")
+    # the greatest step of the distance is that of an impact which the steps have had, and the motion not yet
+    if apart[2] > FINE and apart[2] > FALLS * apart[0]:
+        apart.append(
+            distance(dense, free, course, run_steps(dense, walls, rubbing, DURATION, COARSE * 16)) / length
+        )
+        outcome.count("looked at with sixteen times as many steps")
+        if apart[3] > FALLS * apart[0]:
+            outcome.fault(f"{row}: time steps do not come nearer: {apart}")
+    outcome.hold(row, "apart", apart[-1], NEAR)
+    if apart[0] > FINE:
+        outcome.measure(row, "order", math.log2(max(apart[0], 1e-12) / max(apart[2], 1e-12)) / 2.0)
+    agree(outcome, row, course, runs[2], walls)
+
+
+def agree(outcome: Outcome, row: str, course: Trajectory, found: Run, walls: list[Wall]) -> None:
+    """The clear impacts of both, by walls."""
+    for number in range(len(walls)):
+        own = [event for event in course.events if event.kind == "impact" and event.part == f"wall {number}"]
+        other = [one for one in found.impacts if one[1] == number]
+        clear = [event for event in own if clear_impact(event, walls[number])]
+        theirs = [one for one in other if one[2] < -CLEAR]
+        outcome.count("clear impacts", len(clear))
+        if len(clear) != len(theirs):
+            outcome.count("impacts that differ in number")
+
+
+def clear_impact(event: Any, wall: Wall) -> bool:
+    """Whether an impact was fast enough: half of what it lost over its impulse is a speed."""
+    if wall.restitution > 0.999 or event.impulse <= 0.0:
+        return False
+    # lost = impulse * (1 - e) / 2 * speed
+    return bool(2.0 * event.lost / event.impulse / (1.0 - wall.restitution) > CLEAR)
+
+
+def distance(dense: DenseMechanism, free: FreeMotion, course: Trajectory, one: Run) -> float:
+    """Greatest distance of points at the end [m]."""
+    return max(
+        float(np.max(np.abs(dense.point(one.q[:, None], point)[:, 0] - place)))
+        for point, place in zip(free.points, course.places[-1], strict=True)
+    )
+
+
+CAMPAIGN = Campaign(
+    name="contacts",
+    title="Stops and friction",
+    about=(
+        "Random planar mechanisms of rods of 1 kg/m (dyads with gears and rolling wheels, pendulums on half of them) "
+        "fall from rest against one or two walls with restitutions from 0 to 0.9, with dry friction of one or two "
+        "links, the static one in half of all cases greater. The motion by events is compared with Moreau's time "
+        "steps in absolute coordinates (`tools/campaigns/contacts/time_steps.py`), which seek no event and share no "
+        "formula with the program: with half and a quarter of the step they come nearer at their first order."
+    ),
+    columns={
+        "books": f"greatest gap of the energy balance over m g l; at most {BOOKS:g}",
+        "gain": f"greatest gain of energy in an impact over m g l; at most {GAINED:g}",
+        "sunk": f"how far a point sinks into its wall, of the greatest length; at most {SUNK:g}",
+        "apart": f"distance of points from the time steps with the shortest step, over the length; at most {NEAR:g}",
+        "order": "greatest order at which time steps come nearer",
+    },
+    run=run,
+    cases=500,
+)

@@ -1,0 +1,1 @@
+"""Mutated drawings: imported or refused in words, never with a traceback."""
