@@ -120,7 +120,7 @@ class VariationalEquations:
         """
         integration, problem = self.free.integration, self.problem
         names, base = integration.names, integration.problem
-        rate = integration.rate(start)
+        rate = integration.rate(start, float(times[-1]))
         parameters = np.concatenate(
             [
                 integration.parameters(float(times[-1]), tolerance, rate)[:, 0],
