@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from centrode.gears.blocking_contour import blocking_contour, with_shifts
+from centrode.gears.involutes import involutes, pressure_angles_of
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.shift_fields import shift_fields
-from centrode.geometry.involute import involute, involutes, pressure_angle_of, pressure_angles_of
+from centrode.geometry.involute import involute, pressure_angle_of
 
 PAIRS = {
     "spur": PairGeometry("external", 3.0, (12, 24), (0.6, 0.36)),
