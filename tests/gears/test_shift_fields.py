@@ -49,9 +49,9 @@ def test_fields_are_those_of_single_pairs(name: str) -> None:
                 gap = math.tan(wheel.active_pressure) - math.tan(wheel.flank_pressure)
                 expected[f"above_fillet {number}"] = gap
         for key, value in expected.items():
-            field, _blank, number = key.partition(" ")
+            field, _blank, wheel_number = key.partition(" ")
             array = getattr(fields, field)
-            got = float((array[int(number)] if number else array)[place])
+            got = float((array[int(wheel_number)] if wheel_number else array)[place])
             if math.isnan(value) or math.isnan(one.working_angle):
                 assert math.isnan(got) or field in ("mesh", "above_undercut", "tip_thickness", "tips"), key
             else:
