@@ -170,7 +170,7 @@ class GenerationLayer(Layer):
 
 def _turn(places: Array, angle: float) -> Array:
     cosine, sine = math.cos(angle), math.sin(angle)
-    return places @ np.array([[cosine, sine], [-sine, cosine]])
+    return np.asarray(places @ np.array([[cosine, sine], [-sine, cosine]]))
 
 
 def _half_angle(pair: PairGeometry) -> float:
