@@ -105,9 +105,10 @@ def test_a_limit_is_a_place(centrode: Centrode, files: Path) -> None:
         (FIVE_BAR.replace("length = 0.5", "length = 5"), [], "it does not close"),
         (FIVE_BAR, ["--keep", "AB"], 'drive "AB" has no law that it could keep'),
         (
-            DOUBLE_PENDULUM + '[[loads]]\nkind = "friction"\nlink = "OA"\nvalue = 1\n',
+            DOUBLE_PENDULUM
+            + '[[loads]]\nkind = "friction"\nlink = "OA"\nquadratic = 1\nform = "plain sum"\n',
             [],
-            "dry friction",
+            "a plain sum of friction",
         ),
     ],
 )

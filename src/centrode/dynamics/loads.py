@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import partial
+from importlib import import_module
 from math import ceil, floor, hypot, tau
 from typing import Any, NamedTuple, TypeAlias, assert_never
 
@@ -22,7 +24,6 @@ from centrode.dynamics.load_coordinates import (
 )
 from centrode.dynamics.masses import centre_of, masses_of
 from centrode.dynamics.state import Given, Mass, State, is_none
-from centrode.dynamics.strokes import ends_of_stroke
 from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.path import JETS
@@ -59,6 +60,9 @@ from centrode.numerics.text_formula import TextFormula, compile_formula
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+# most loads have no diagram over a stroke, whose ends need the motion
+_strokes = partial(import_module, "centrode.dynamics.strokes")
 
 SLACK = 1e-9
 """A stroke may leave its diagram by this share of the diagram's width: that much is rounding of printed rows."""
@@ -651,7 +655,7 @@ def _amount_along_guide(
     if given:
         what = _("a table over the stroke is not computed where dimensions vary")
         raise NotComputedYet(where, what, _("give the table over the displacement"))
-    least, greatest = ends_of_stroke(mechanism, load.guide, where)
+    least, greatest = _strokes().ends_of_stroke(mechanism, load.guide, where)
     stroke = greatest - least
     if load.measured_from == GREATEST:
         # seen from there the displacement grows on the way back: rows and columns change places

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.geometry.sphere import Attitude, cross, dot, unit_vector, vector_in_frame
 from centrode.kinematics.path import JETS
-from centrode.kinematics.plan_evaluation import PlanLayout
-from centrode.kinematics.samples import Samples
-from centrode.kinematics.solve import Solved
 from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.jets import Jet, JetFunctions, integral
+
+if TYPE_CHECKING:
+    from centrode.kinematics.plan_evaluation import PlanLayout
+    from centrode.kinematics.samples import Samples
+    from centrode.kinematics.solve import Solved
 
 # What a mass is to the computation: centre of mass and inertia about it, in the plane and on the sphere.
 
