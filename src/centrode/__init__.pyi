@@ -101,6 +101,7 @@ from .tolerances.allocation import allocate_tolerances as allocate_tolerances
 from .synthesis.requests import SynthesisTask as SynthesisTask
 from .synthesis.requests import read_synthesis as read_synthesis
 from .synthesis.synthesise import synthesise as synthesise
+from .synthesis.improvement import improve as improve
 
 # Any result, shown
 from .topics.presentation import summary as summary

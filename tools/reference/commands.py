@@ -30,7 +30,7 @@ PAGES: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
         ),
         "commands-cams-and-many": (
             "Commands of cams, synthesis and many mechanisms",
-            ("cam", "synthesise", "variants", "sweep"),
+            ("cam", "synthesise", "improve", "variants", "sweep"),
         ),
     }
 )  # fmt: skip

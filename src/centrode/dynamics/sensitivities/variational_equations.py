@@ -128,7 +128,7 @@ class VariationalEquations:
             raise NotComputedYet("", what, _("remove them, or compare motions whose numbers differ a little"))
         integration, problem = self.free.integration, self.problem
         names, base = integration.names, integration.problem
-        rate = integration.rate(start)
+        rate = integration.rate(start, float(times[-1]))
         parameters = np.concatenate(
             [
                 integration.parameters(float(times[-1]), tolerance, rate)[:, 0],
