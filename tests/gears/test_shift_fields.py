@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from centrode.gears.blocking_contour import blocking_contour, with_shifts
+from centrode.gears.involutes import involutes, pressure_angles_of
 from centrode.gears.pair_geometry import PairGeometry
 from centrode.gears.shift_fields import shift_fields
-from centrode.geometry.involute import involute, involutes, pressure_angle_of, pressure_angles_of
+from centrode.geometry.involute import involute, pressure_angle_of
 
 PAIRS = {
     "spur": PairGeometry("external", 3.0, (12, 24), (0.6, 0.36)),
@@ -48,9 +49,9 @@ def test_fields_are_those_of_single_pairs(name: str) -> None:
                 gap = math.tan(wheel.active_pressure) - math.tan(wheel.flank_pressure)
                 expected[f"above_fillet {number}"] = gap
         for key, value in expected.items():
-            field, _blank, number = key.partition(" ")
+            field, _blank, wheel_number = key.partition(" ")
             array = getattr(fields, field)
-            got = float((array[int(number)] if number else array)[place])
+            got = float((array[int(wheel_number)] if wheel_number else array)[place])
             if math.isnan(value) or math.isnan(one.working_angle):
                 assert math.isnan(got) or field in ("mesh", "above_undercut", "tip_thickness", "tips"), key
             else:

@@ -53,7 +53,7 @@ class MeshLayer(Layer):
     def reach(self) -> Array:
         """A window about the pitch point."""
         middle, half = np.array([0.0, self.pitch]), self.half
-        return self.factor * (middle + np.array([[-half, -0.6 * half], [half, 0.6 * half]]))
+        return np.asarray(self.factor * (middle + np.array([[-half, -0.6 * half], [half, 0.6 * half]])))
 
     def bodies(self, frame: int) -> list[Array]:
         """Outlines (n, 2) of pinion and wheel in a frame [m]; the pinion turns clockwise."""
@@ -73,8 +73,8 @@ class MeshLayer(Layer):
         begin, end = pair.action_ends
         # The involute unwinds from the base circle: its right flank lies half a tooth ahead of the pitch point.
         rolled = math.tan(pair.working_angle) + _half_angle(pair) + float(self.turned[frame])
-        places = np.arange(-4, 5) * pair.base_pitch + pair.wheels[0].base / 2 * rolled
-        kept = places[(places >= max(begin, 0.0)) & (places <= end)]
+        places = np.arange(-4.0, 5.0) * pair.base_pitch + pair.wheels[0].base / 2 * rolled
+        kept: Array = places[(places >= max(begin, 0.0)) & (places <= end)]
         return _on_line(pair, kept)
 
     def ground(self, axes: Axes) -> None:
@@ -142,7 +142,7 @@ class GenerationLayer(Layer):
     def reach(self) -> Array:
         """A window about the gap that is cut."""
         middle, half = np.array([0.0, self.pitch]), self.half
-        return self.factor * (middle + np.array([[-half, -0.75 * half], [half, 0.75 * half]]))
+        return np.asarray(self.factor * (middle + np.array([[-half, -0.75 * half], [half, 0.75 * half]])))
 
     def ground(self, axes: Axes) -> None:
         """The wheel that comes out, and its pitch circle."""
@@ -170,7 +170,7 @@ class GenerationLayer(Layer):
 
 def _turn(places: Array, angle: float) -> Array:
     cosine, sine = math.cos(angle), math.sin(angle)
-    return places @ np.array([[cosine, sine], [-sine, cosine]])
+    return np.asarray(places @ np.array([[cosine, sine], [-sine, cosine]]))
 
 
 def _half_angle(pair: PairGeometry) -> float:
@@ -184,7 +184,7 @@ def _on_line(pair: PairGeometry, radii: Array) -> Array:
     angle, pitch = pair.working_angle, np.array([0.0, pair.wheels[0].working_pitch / 2])
     along = np.array([math.cos(angle), math.sin(angle)])
     # The pinion turns clockwise: its driving flanks touch on the right of their teeth.
-    return pitch + np.outer(radii - pair.pitch_curvature_radius, along)
+    return np.asarray(pitch + np.outer(radii - pair.pitch_curvature_radius, along))
 
 
 def _rack(pair: PairGeometry, along: float) -> Array:

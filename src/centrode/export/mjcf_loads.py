@@ -106,16 +106,16 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case HingeSpring(link=link, relative_to=base, stiffness=stiffness, free_angle=free):
             # the coordinates of joints count from the initial position
             rest = (free or 0.0) - (pose.angles[link] - pose.angles[base])
-            properties = {"stiffness": number(stiffness), "springlength": _resting(rest)}
-            return TendonLoad(name, (), _turning(pose, link, base), properties)
+            properties = {"stiffness": number(stiffness), "springlength": _resting_length(rest)}
+            return TendonLoad(name, (), _joint_turns(pose, link, base), properties)
         case HingeDamper(link=link, relative_to=base, damping=damping):
-            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(damping)})
+            return TendonLoad(name, (), _joint_turns(pose, link, base), {"damping": number(damping)})
         case HingeFriction(link=link, relative_to=base, value=None, viscous=float(viscous), quadratic=None):
-            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(viscous)})
+            return TendonLoad(name, (), _joint_turns(pose, link, base), {"damping": number(viscous)})
         case GuideFriction(guide=guide, value=None, viscous=float(viscous), quadratic=None):
             return TendonLoad(name, (), {f"guide {guide}": 1.0}, {"damping": number(viscous)})
         case Torque(link=link, relative_to=base, value=float(value), table=None):
-            return ActuatorLoad(name, {}, _turning(pose, link, base), value)
+            return ActuatorLoad(name, {}, _joint_turns(pose, link, base), value)
         case GuideForce(guide=guide, value=float(value), table=None, pressure=None):
             return ActuatorLoad(name, {}, {f"guide {guide}": 1.0}, value)
         case PointForce(point=point, vector=(float(x), float(y)), axes="frame", while_moving=None):
@@ -168,11 +168,11 @@ def _sites(pose: Pose, points: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _turning(pose: Pose, link: str, base: str) -> dict[str, float]:
+def _joint_turns(pose: Pose, link: str, base: str) -> dict[str, float]:
     return pose.turns({link: 1.0, base: -1.0})
 
 
-def _resting(length: float) -> str:
+def _resting_length(length: float) -> str:
     """A resting length as MuJoCo reads it: -1 alone has a meaning of its own there."""
     return number(length if length != -1.0 else -1.0 - 1e-15)
 

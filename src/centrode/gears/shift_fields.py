@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from centrode.gears.involutes import Array
+from centrode.gears.involutes import Array, involutes, pressure_angles_of
 from centrode.gears.pair_geometry import PairGeometry
-from centrode.geometry.involute import involute, involutes, pressure_angles_of
+from centrode.geometry.involute import involute
 
 
 @dataclass(frozen=True, eq=False)

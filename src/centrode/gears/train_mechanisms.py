@@ -201,7 +201,7 @@ def _load_of_motor(load: dict[str, Any], start: float, ratio: float) -> dict[str
     if "table" in load and load.get("over", DRIVE if load.get("kind") == "torque" else "") == DRIVE:
         what = _("a load of the machine has a table over the angle of its crank")
         raise InputError("machine", what, _("give it as a formula of q, or over a displacement"))
-    changed = {}
+    changed: dict[str, Any] = {}
     for key in ("vector", "value"):
         value = load.get(key)
         if isinstance(value, list):
