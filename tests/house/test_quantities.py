@@ -137,6 +137,12 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "sector",
         "wear",
     }
+    known |= {"stability", "growth_rate", "holding_moment", "friction_reach", "friction_holds_everywhere"}
+    known |= {f"{kind}_frequency" for kind in ("damped", "natural", "undamped", "critical")}
+    known |= {"damping_ratio", "mode_amplitude", "mode_phase", "friction_band", "branch"}
+    known |= {f"branch_{name}" for name in ("value", "coordinate", "stability")}
+    known |= {f"critical_{name}" for name in ("value", "kind", "coordinate")}
+    known |= {f"{name}_gradient" for name in ("coordinate", "speed", "position", "point_speed")}
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

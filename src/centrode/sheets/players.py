@@ -24,15 +24,15 @@ class MotionPlayer:
     ----------
     mechanism, motion : whose motion
     by_time : a slider goes through time, whatever the motion is a function of
-    title : what moves so; nothing where the place says it
     marks : names and instants [s] that the slider through time marks
+    title : what moves so; nothing where the place says it
     """
 
     mechanism: Mechanism
     motion: xarray.Dataset
     by_time: bool = False
-    title: Text = NOTHING
     marks: tuple[tuple[Text, float], ...] = ()
+    title: Text = NOTHING
 
 
 @dataclass(frozen=True)

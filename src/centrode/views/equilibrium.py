@@ -198,7 +198,7 @@ def _table(found: xr.Dataset) -> Table:
     """One row an equilibrium."""
     count = found.sizes["equilibrium"]
     columns = [
-        Column("equilibrium", np.arange(1, count + 1), head=Sentence("equilibrium"), whole=True),
+        Column("equilibrium", numbers_from_one(count), head=Sentence("equilibrium")),
         *_values_of(found, "drive_value", "drive", "drive_"),
         *_values_of(found, "generalised_coordinate", "coordinate", ""),
         Column("potential_energy", found["potential_energy"].values, "J", Symbol("V")),
@@ -222,6 +222,11 @@ def _table(found: xr.Dataset) -> Table:
             ),
         ]
     return Table(tuple(columns), Sentence("Equilibria"))
+
+
+def numbers_from_one(count: int) -> tuple[Text, ...]:
+    """1, 2, ... as numbers of things, which no document gives decimals."""
+    return tuple(Number(k + 1, digits="d") for k in range(count))
 
 
 def _values_of(found: xr.Dataset, variable: str, dimension: str, prefix: str) -> Iterator[Column]:

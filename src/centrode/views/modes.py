@@ -7,8 +7,6 @@ from functools import partial
 from math import tau
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from centrode.sheets.linkages import MechanismPicture
 from centrode.sheets.players import MotionPlayer
 from centrode.sheets.sheet import (
@@ -25,7 +23,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Name, Number, Sentence, Symbol, Text
-from centrode.views.equilibrium import STABILITY, coordinate_units, place_text
+from centrode.views.equilibrium import STABILITY, coordinate_units, numbers_from_one, place_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,7 +81,7 @@ def _mode_text(found: xr.Dataset, k: int) -> Text:
 def _table(found: xr.Dataset) -> Table:
     """One row a mode."""
     columns = [
-        Column("mode", found["mode"].values.astype(np.int64), head=Sentence("mode"), whole=True),
+        Column("mode", numbers_from_one(found.sizes["mode"]), head=Sentence("mode")),
         Column("natural_frequency", found["natural_frequency"].values, "rad/s", Symbol("ω", "0"), unit_fixed=True),
         Column("frequency", found["damped_frequency"].values / tau, "Hz", Symbol("f")),
         Column("damping_ratio", found["damping_ratio"].values, "1", Symbol("ζ")),

@@ -94,3 +94,18 @@ def test_parameter_studies_keep_last_values_and_extremes() -> None:
     assert np.allclose(found["greatest_OA"].values, 0.0, atol=1e-8)
     ratio = found["least_OA_at"].values[0] / found["least_OA_at"].values[1]
     assert abs(ratio - np.sqrt(0.8)) < 1e-7
+
+
+def test_parameter_studies_keep_when_a_stop_is_met() -> None:
+    rod = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1, "mass": 1, "shape": "rod", "angle": 0}},
+        stops=[{"link": "OA", "least": -1.0, "restitution": 0.5}],
+        simulation={"duration": 0.6, "tolerance": 1e-11, "samples": 61},
+    )
+    found = ct.sweep(rod, {"links.OA.length": [0.64, 1.0]}, compute="simulate")
+    first = found["first_occasion_at"].values
+    # time goes as the root of the length
+    assert abs(first[0] / first[1] - 0.8) < 1e-9
+    assert (found["occasions"].values >= 1).all()

@@ -110,7 +110,7 @@ def equilibrium(
     ... )
     >>> found = ct.equilibrium(pendulum)
     >>> found.angle.sel(link="OA").values.round(3).tolist()
-    [1.571, -1.571]
+    [-1.571, 1.571]
     """
     description = mechanism_of(mechanism)
     held = held_values(description, hold)

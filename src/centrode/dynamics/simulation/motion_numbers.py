@@ -18,9 +18,9 @@ def motion_numbers(run: xr.Dataset) -> dict[str, tuple[float, str]]:
     """Name -> number and SI unit, of a motion by the equations of all links.
 
     Of every drive, without drives of every coordinate: `last_...`, `last_speed_...`, `least_...`, `greatest_...` with
-    their times `..._at`; of the kinetic energy the last and the greatest; `last_time`, and how many `occasions` there
-    were. Extremes lie between samples as well: of the polynomial of fifth degree through values, speeds and
-    accelerations.
+    their times `..._at`; of the kinetic energy the last and the greatest; `last_time`; how many `occasions` (events)
+    there were, and when the first and the last of them. Extremes lie between samples as well: of the polynomial of
+    fifth degree through values, speeds and accelerations.
     """
     times = run["time"].values
     drives = bool(run.sizes["drive"])
@@ -48,6 +48,8 @@ def motion_numbers(run: xr.Dataset) -> dict[str, tuple[float, str]]:
         "last_kinetic_energy": (float(energy[-1]), "J"),
         "greatest_kinetic_energy": (float(np.max(energy)), "J"),
         "occasions": (float(run.sizes["occasion"]), "1"),
+        "first_occasion_at": (float(min(run["occasion_time"].values, default=np.nan)), "s"),
+        "last_occasion_at": (float(max(run["occasion_time"].values, default=np.nan)), "s"),
     }
 
 
