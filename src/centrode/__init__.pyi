@@ -62,10 +62,12 @@ from .dynamics.force_polygons.polygons import force_polygons as force_polygons
 from .dynamics.steady_motion.steady import steady_motion as steady_motion
 from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.simulation.simulate import simulate as simulate
-from .dynamics.equilibria.equilibrium import equilibrium as equilibrium
-from .dynamics.equilibria.modes import modes as modes
 from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
+
+# Equilibria and vibration
+from .dynamics.equilibria.equilibrium import equilibrium as equilibrium
+from .dynamics.equilibria.modes import modes as modes
 
 # Gears
 from .gears.results import gear_pair as gear_pair

@@ -57,10 +57,10 @@ class ActuatorLoad:
 
 @dataclass(frozen=True)
 class OwnWeight:
-    """A link whose weight is not its mass times gravity: the share of gravity that is taken off it."""
+    """A link whose weight is its own: what is added to its mass times gravity, at a site in its centre of mass."""
 
     link: str
-    relief: float
+    force: ActuatorLoad | None
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,12 @@ def model_loads(pose: Pose) -> ModelLoads:
     found = {label: _model_load(pose, label, load) for label, load in labelled_loads(pose.mechanism)}
     return ModelLoads(
         tuple(x for x in found.values() if isinstance(x, TendonLoad)),
-        tuple(x for x in found.values() if isinstance(x, ActuatorLoad)),
+        tuple(
+            force
+            for x in found.values()
+            if (force := x.force if isinstance(x, OwnWeight) else x) is not None
+            and isinstance(force, ActuatorLoad)
+        ),
         tuple(x for x in found.values() if isinstance(x, OwnWeight)),
         tuple(label for label, x in found.items() if x is None),
     )
@@ -124,10 +129,12 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case PointWeight(point=point, value=float(value)):
             return _force(pose, name, point, turned_down(pose.mechanism, value))
         case LinkWeight(link=link, value=None) if link in pose.masses:
-            return OwnWeight(link, 0.0)
+            return OwnWeight(link, None)
         case LinkWeight(link=link, value=float(value)) if link in pose.masses:
             own = float(pose.masses[link].mass) * math.hypot(*(pose.mechanism.gravity or (0.0, 0.0)))
-            return OwnWeight(link, 1.0 - value / own) if own else None
+            gear = numbers((*turned_down(pose.mechanism, value - own), 0.0, 0.0, 0.0, 0.0))
+            attributes = {"site": f"weight {link}", "refsite": WORLD_SITE, "gear": gear}
+            return OwnWeight(link, ActuatorLoad(name, attributes, {}, 1.0)) if own else None
         case (
             HingeFriction() | GuideFriction() | BearingFriction() | SliderFriction()
             | Torque() | GuideForce() | PointForce() | LinkWeight() | PointWeight()

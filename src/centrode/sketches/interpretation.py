@@ -78,7 +78,9 @@ class _Reader:
         self.strokes: dict[str, list[Stroke]] = {}
         for stroke in sketch.strokes:
             self.strokes.setdefault(role_of(stroke.layer), []).append(stroke)
-        if any(role_of(one.layer) == "gear" for one in (*sketch.strokes, *sketch.rings, *sketch.arcs)):
+        layers = {one.layer for one in sketch.strokes}
+        layers |= {one.layer for one in (*sketch.rings, *sketch.arcs)}
+        if any(role_of(layer) == "gear" for layer in layers):
             what = _("gears and wheels are not read")
             raise InputError(where, what, _("remove their layer, and write them into the description"))
         aside = len(self.strokes.pop("aside", [])) + len(self.strokes.pop("name", []))

@@ -214,7 +214,8 @@ def _path_pieces(text: str) -> list[tuple[list[Place], bool]] | None:
     here = (0.0, 0.0)
     start = here
     places: list[Place] = []
-    command, numbers = "", []
+    command = ""
+    numbers: list[float] = []
     for step in _STEP.finditer(text):
         letter, number, other = step.groups()
         if other or (letter and letter not in "MmLlHhVvZz"):
