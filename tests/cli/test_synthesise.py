@@ -123,6 +123,33 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
             3,
             "at most 47.2 deg is possible",
         ),
+        (
+            '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 0]]\nexact = 4',
+            2,
+            '"exact" means nothing to kind = "path"',
+        ),
+        (
+            '[synthesis]\nkind = "function"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 3]]\nexact = 5',
+            2,
+            "5 exact points, and a table of 3",
+        ),
+        (
+            '[synthesis]\nkind = "motion"\ntopology = "crank-rocker"\ntargets = [[0, 0, 0], [1, 1, 1]]\n'
+            "hinges = [[0, 0], [1, 0]]",
+            2,
+            "given hinges need three poses, got 2",
+        ),
+        (
+            '[synthesis]\nkind = "function"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, 1], [2, 3]]\n'
+            "[synthesis.free]\nlinks.OA.length = [1, 2]",
+            2,
+            '"free" means nothing to kind = "function"',
+        ),
+        (
+            STROKES + 'topology = "shaper"\nstroke = 1\ndwell = { range = [0, 1] }',
+            2,
+            "a dwell is that of a mechanism",
+        ),
         (STROKES + 'topology = "shapr"\nstroke = 1', 2, 'did you mean "shaper"?'),
         (
             '[links.OA]\nlength = 1\n[synthesis]\nkind = "path"\ntopology = "crank-rocker"',
@@ -161,4 +188,4 @@ def test_the_result_is_shown_as_any_other() -> None:
     found = ct.synthesise({"synthesis": wanted})
     assert "swing" in ct.summary(found)
     assert list(ct.tables(found)) == ["answers"]
-    assert ct.figures(found) == {}
+    assert list(ct.figures(found)) == ["construction"]

@@ -218,3 +218,43 @@ class Stop:
     def __call__(self) -> bool:
         self.left -= 1
         return self.left < 0
+
+
+def test_trade_off_is_a_front(monkeypatch) -> None:
+    """No answer is better than another in both its error and its transmission angle; the best error stays."""
+    few = functools.partial(start_candidates.closed_candidates, count=60)
+    monkeypatch.setattr(path_synthesis, "closed_candidates", few)
+    monkeypatch.setattr(path_synthesis, "TRADES", 2)
+    found = ct.synthesise(request('targets = "yu1.csv"\ntrade_off = "transmission"', 'crank = "OA"'))
+    errors = [one.error for one in found.answers]
+    angles = [one.transmission for one in found.answers]
+    assert len(errors) > 1
+    assert errors == sorted(errors) and angles == sorted(angles)
+    check_ordered(found.answers[-1], rows("yu1"))
+
+
+def test_what_excludes_everything_is_named(monkeypatch) -> None:
+    few = functools.partial(start_candidates.closed_candidates, count=6)
+    monkeypatch.setattr(path_synthesis, "closed_candidates", few)
+    limits = 'crank = "OA"\ntransmission = "80 deg"\nlength_ratio = 1.1'
+    with pytest.raises(ct.MotionError, match="without it the nearest misses the targets by") as failure:
+        ct.synthesise(request('targets = "yu1.csv"', limits))
+    named = failure.value.where.split()[-1]
+    assert named in ("transmission", "length_ratio", "crank")
+
+
+def test_a_box_is_certain() -> None:
+    """What the search takes the box for is near, and what is said of an answer is certain to a millionth."""
+    random = np.random.default_rng(2)
+    excess = random.uniform(0.15, 1.5, (40, 3))
+    ground, coupler, rocker = (1 + excess.sum(axis=1) - excess[:, k] for k in range(3))
+    zero = np.zeros(40)
+    linkages = np.column_stack(
+        [zero, zero, ground, zero, zero + 1, coupler, rocker, *random.uniform(-2.5, 2.5, (2, 40))]
+    )
+    side = np.ones(40)
+    fine = path_synthesis.box_of(linkages, side, 7200)
+    assert (np.abs(path_synthesis.box_of(linkages, side) / fine - 1) < 1e-2).all()
+    for row, box in zip(linkages, fine, strict=True):
+        assert path_synthesis.is_within(row, 1.0, tuple(box * (1 + 1e-6)))
+        assert not path_synthesis.is_within(row, 1.0, (box[0] * (1 - 1e-6), box[1]))

@@ -107,3 +107,30 @@ def test_too_good_a_transmission_names_the_greatest_possible_one() -> None:
         one(topology="slider-crank-offset", stroke="0.2 m", time_ratio=1.2, transmission="70 deg")
     with pytest.raises(ct.InputError, match="above 1"):
         one(topology="shaper", stroke="0.2 m", time_ratio=1)
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        {"topology": "crank-rocker", "swing": "40 deg"},
+        {"topology": "slider-crank-offset", "stroke": 0.4},
+        {"topology": "six-bar-press", "stroke": 0.3},
+    ],
+)
+def test_construction_sees_the_stroke_at_theta(wanted) -> None:
+    """From everywhere on one side of the circle both ends are seen at the same angle, O among these places."""
+    drawn = ct.synthesise(
+        {"synthesis": {"kind": "strokes", **wanted, "time_ratio": 1.3, "answers": 1}}
+    ).construction
+    theta = math.pi * 0.3 / 2.3
+    first, second = drawn.ends
+    assert abs(cmath.phase((second - drawn.fixed[0]) / (first - drawn.fixed[0]))) == pytest.approx(
+        theta, abs=1e-9
+    )
+    for place in drawn.sight[::20]:
+        seen = abs(cmath.phase((second - place) / (first - place)))
+        assert min(abs(seen - theta), abs(math.pi - seen - theta)) < 1e-9
+    # in both limit positions O, A and B lie in one line
+    for end in drawn.ends:
+        arms = [line for line in drawn.links if np.abs(line - end).min() < 1e-9 and len(line) == 2]
+        assert arms

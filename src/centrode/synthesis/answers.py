@@ -91,6 +91,26 @@ class Answer:
 
 
 @dataclass(frozen=True, eq=False)
+class Construction:
+    """Both limit positions of a mechanism from a stroke, and where they leave the hinge of its crank.
+
+    Attributes
+    ----------
+    ends : (2) complex, the end of the stroke that the crank moves directly [m]
+    links : lines of the links in both limit positions
+    pin : (n) complex, the circle of the crank's pin
+    sight : (n) complex, the circle from which both ends are seen at the same angle; empty of slotted levers
+    fixed : (m) complex, fixed hinges
+    """
+
+    ends: Complex
+    links: tuple[Complex, ...]
+    pin: Complex
+    sight: Complex
+    fixed: Complex
+
+
+@dataclass(frozen=True, eq=False)
 class SynthesisResults:
     """The answers to a request, the best first.
 
@@ -104,6 +124,7 @@ class SynthesisResults:
     complete : False where it was stopped before its end
     curves : of poses: name -> complex points of the centre and circle point curves
     values : (n, 2) crank and rocker angles [rad] that a function should have
+    construction : of strokes, that of the best answer; None elsewhere
     """
 
     task: SynthesisTask
@@ -114,6 +135,7 @@ class SynthesisResults:
     complete: bool = True
     curves: Mapping[str, Complex] = field(default_factory=dict)
     values: Array | None = None
+    construction: Construction | None = None
 
     @property
     def mechanism(self) -> Mechanism:

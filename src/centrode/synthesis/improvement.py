@@ -218,10 +218,10 @@ def improve(
         moved = solver(mechanism, names, samples, outputs=outputs)
     except InputError as error:
         # what the solver calls measure_2 is the second of the numbers that are kept
-        place, _between, _rest = error.where.removeprefix("outputs measure_").partition("_")
-        if not error.where.startswith("outputs measure_") or not place.isdigit():
+        which, _between, _rest = error.where.removeprefix("outputs measure_").partition("_")
+        if not error.where.startswith("outputs measure_") or not which.isdigit():
             raise
-        raise InputError(wheres[int(place)], error.what, error.repair) from None
+        raise InputError(wheres[int(which)], error.what, error.repair) from None
     search = _Search(moved, measures, low, high)
     own = np.array(moved.own)
     try:

@@ -364,17 +364,19 @@ def _starts(
 def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[float, Array]:
     """The next minimum from a start, in units of the ranges; a step to where nothing moves is taken back."""
     width = high - low
-    best = [math.inf, start]
+    best = start
+    least = math.inf
     count = len(misses(start)[0])
 
     def rows(place: Array) -> Array:
+        nonlocal best, least
         try:
             missed = misses(low + width * place)[0]
         except _Open:
-            return np.full(count, 1e3 * (1 + math.sqrt(best[0]) if math.isfinite(best[0]) else 1e3))
+            return np.full(count, 1e3 * (1 + math.sqrt(least) if math.isfinite(least) else 1e3))
         cost = float((missed**2).sum())
-        if cost < best[0]:
-            best[:] = [cost, low + width * place]
+        if cost < least:
+            best, least = low + width * place, cost
         return missed
 
     def slopes(place: Array) -> Array:
@@ -386,7 +388,7 @@ def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[floa
 
     inside = np.clip((start - low) / width, 1e-9, 1 - 1e-9)
     least_squares(rows, inside, slopes, bounds=(0.0, 1.0), xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=200)
-    return best[0], best[1]
+    return least, best
 
 
 def _answer(
@@ -481,7 +483,8 @@ def _broken(
     ):
         yield "size"
     for axis, box in enumerate((constraints.pivots.x, constraints.pivots.y)):
-        places = [float(place[axis]) for place in mechanism.frame.points.values()]
+        frame = np.array(list(mechanism.frame.points.values()), dtype=np.float64)
+        places = frame[:, axis].tolist()
         if box is not None and not all(box[0] - KEPT <= place <= box[1] + KEPT for place in places):
             yield f"pivots.{'xy'[axis]}"
     if constraints.length_ratio is not None:

@@ -53,9 +53,9 @@ CRANK_MARGIN = 1e-4
 """Of Grashof's rule, in units of frame and crank: a crank that only just turns is none."""
 OPEN_CANDIDATES = 320
 RANDOM_STARTS = 1500
-BOX_PLACES, FINE_PLACES = 24, 7200
+BOX_PLACES, FINE_PLACES = 36, 7200
 """Crank angles at which the box around a mechanism is looked at, in the search and of an answer."""
-BOX_MARGIN = 2e-3
+BOX_MARGIN = 3e-3
 TRADES = 5
 """Steps of a trade-off."""
 MET = 1e-6
@@ -274,20 +274,21 @@ def is_within(linkage: Array, side: float, size: tuple[float, ...]) -> bool:
 
 def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) -> Lanes:
     targets = problem.targets
+    points = np.asarray(targets.points, dtype=np.complex128)
     if targets.crank is not None:
-        lanes = timed_candidates(targets.points, targets.crank, wanted.timing == "phase")
+        lanes = timed_candidates(points, targets.crank, wanted.timing == "phase")
     elif closed:
-        lanes = closed_candidates(targets.points)
+        lanes = closed_candidates(points)
     else:
-        lanes = open_candidates(targets.points, OPEN_CANDIDATES)
+        lanes = open_candidates(points, OPEN_CANDIDATES)
     bounded = np.isfinite(problem.low[:9]) & np.isfinite(problem.high[:9])
-    if wanted.place == "given" or bounded[CRANK:].any() or len(targets.points) < 6:
+    if wanted.place == "given" or bounded[CRANK:].any() or len(points) < 6:
         random = np.random.default_rng(seed)
         low, high = problem.low.copy(), problem.high.copy()
         low[PHASE:], high[PHASE:] = 0.0, 0.0
         if problem.free[PHASE]:
             low[PHASE], high[PHASE] = -np.pi, np.pi
-        further = random_candidates(targets.points, targets.crank, low, high, random, RANDOM_STARTS)
+        further = random_candidates(points, targets.crank, low, high, random, RANDOM_STARTS)
         lanes = lanes.join(further)
     lanes.variables = np.clip(lanes.variables, problem.low, problem.high)
     if targets.directions is not None:

@@ -194,7 +194,8 @@ def frame_arcs(linkages: Array) -> Array:
     fixed = unit_vectors(linkages[:, O_LON], linkages[:, O_LAT])
     other = unit_vectors(linkages[:, D_LON], linkages[:, D_LAT])
     sine: Array = np.linalg.norm(np.cross(fixed, other), axis=-1)
-    return np.arctan2(sine, _dot(fixed, other))
+    arcs: Array = np.arctan2(sine, _dot(fixed, other))
+    return arcs
 
 
 def _reaches(linkages: Array) -> tuple[Array, Array, Array]:

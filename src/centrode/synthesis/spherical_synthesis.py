@@ -423,7 +423,7 @@ def _trace_point(
         exact = motion(mechanism, at=list(crank))
     except CentrodeError:
         return none, none
-    return tuple(_map(one.position.sel(point=point).to_numpy()) for one in (data, exact))  # type: ignore[return-value]
+    return tuple(_map(one.position.sel(point=point).to_numpy()) for one in (data, exact))
 
 
 def _transmissions(linkages: Array, side: Array, way: Array, turns: Booleans) -> Array:
@@ -477,7 +477,7 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
         & (arcs > LEAST_ARC).all(axis=1)
         & (arcs < np.pi - LEAST_ARC).all(axis=1)
     )
-    turns = (spherical_crank_margins(linkages) > 1e-9).all(axis=1)
+    turns: Booleans = np.all(spherical_crank_margins(linkages) > 1e-9, axis=1)
     with np.errstate(invalid="ignore"):
         clean = (posed.sides == posed.sides[:, :1]).all(axis=1) & (np.abs(way[:, -1] - way[:, 0]) < 2 * np.pi)
         clean &= turns | posed.passes(way[:, [0, -1]])
@@ -528,9 +528,10 @@ def kept_rows(answers: list[Answer]) -> list[Array]:
     """Places of the hinges and arcs (7,) of answers."""
     rows = []
     for answer in answers:
-        frame, links = answer.mechanism.frame.points, answer.mechanism.links
+        links = answer.mechanism.links
+        places = np.array(list(answer.mechanism.frame.points.values()), dtype=np.float64)
         arcs = [float(links[name].length or links[name].coordinates["B"][0]) for name in ("OA", "AB", "DB")]
-        rows.append(np.array([*frame["O"][:2], *frame["D"][:2], *arcs]))
+        rows.append(np.array([*places[:2, :2].ravel(), *arcs]))
     return rows
 
 
@@ -685,7 +686,7 @@ def _keeps(wanted: Synthesis) -> Callable[[Array], Booleans]:
     def keeps(variables: Array) -> Booleans:
         rows = _frames(variables)
         arcs = variables[:, 2:]
-        good: Booleans = (arcs > LEAST_ARC).all(axis=1) & (arcs < np.pi - LEAST_ARC).all(axis=1)
+        good: Booleans = np.all((arcs > LEAST_ARC) & (arcs < np.pi - LEAST_ARC), axis=1)
         if constraints.crank is not None:
             good &= (spherical_crank_margins(rows) > 1e-9).all(axis=1)
         if constraints.transmission is not None:

@@ -12,7 +12,15 @@ from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.synthesis.answers import CHECKED_PLACES, Answer, Defects, SynthesisResults, box_around
+from centrode.synthesis.answers import (
+    CHECKED_PLACES,
+    Answer,
+    Construction,
+    Defects,
+    SynthesisResults,
+    box_around,
+)
+from centrode.synthesis.four_bars import Complex
 from centrode.synthesis.requests import Synthesis, SynthesisTask
 from centrode.synthesis.strokes import (
     EQUAL,
@@ -60,7 +68,9 @@ def stroke_answers(task: SynthesisTask) -> SynthesisResults:
         case _:
             mechanisms = _presses(task, ratio)
     return SynthesisResults(
-        task, tuple(_answer(mechanism, transmission, wanted) for mechanism, transmission in mechanisms)
+        task,
+        tuple(_answer(mechanism, transmission, wanted) for mechanism, transmission in mechanisms),
+        construction=_construct(mechanisms[0][0], wanted),
     )
 
 
@@ -92,41 +102,85 @@ def output_of(mechanism: Mechanism, wanted: Synthesis) -> tuple[str, str]:
 
 def _measure_stroke(mechanism: Mechanism, wanted: Synthesis) -> Mapping[str, tuple[float, str]]:
     """Stroke and time ratio of the output, refined between samples by the slopes of the engine's motion."""
-    kind, name = output_of(mechanism, wanted)
-
-    def at(places: list[float]) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-        data = motion(mechanism, at=places)
-        if kind == "angle":
-            return (
-                np.unwrap(data.angle.sel(link=name).to_numpy()),
-                data.angular_velocity.sel(link=name).to_numpy(),
-            )
-        column = data.guide.to_numpy().tolist().index(name)
-        return data.slide.to_numpy()[:, column], data.slide_velocity.to_numpy()[:, column]
-
-    # off the round angles at which limit positions like to lie
-    turn = np.linspace(0.0, 2 * math.pi, CHECKED_PLACES) + start_of(mechanism) + OFF_ROUND
-    _values, speeds = at(turn.tolist())
-    cells = np.flatnonzero(speeds[:-1] * speeds[1:] < 0)
-    low, high, rises = turn[cells], turn[cells + 1], speeds[cells] > 0
-    for _round in range(ROUNDS if len(cells) else 0):
-        places = low + (high - low) * np.linspace(0.0, 1.0, PARTS + 1)[:, None]
-        found = at(places.ravel().tolist())[1].reshape(places.shape)
-        before = np.maximum((np.where(rises, found, -found) > 0).sum(axis=0), 1)
-        column = np.arange(len(cells))
-        low, high = places[before - 1, column], places[np.minimum(before, PARTS), column]
-    ends = [float(end) for end in (low + high) / 2]
+    ends = _limit_places(mechanism, wanted)
     if len(ends) != 2:
         return {}
-    first, second = (float(at([end])[0][0]) for end in ends)
+    first, second = (float(_output_at(mechanism, wanted, [end])[0][0]) for end in ends)
     between = ends[1] - ends[0]
     slow = max(between, 2 * math.pi - between)
-    unit, key = ("rad", "swing") if kind == "angle" else ("m", "stroke")
+    unit, key = ("rad", "swing") if output_of(mechanism, wanted)[0] == "angle" else ("m", "stroke")
     return {
         key: (abs(second - first), unit),
         "time_ratio": (slow / (2 * math.pi - slow), "1"),
         "limit_angle": (limit_angle(slow / (2 * math.pi - slow)), "rad"),
     }
+
+
+def _output_at(
+    mechanism: Mechanism, wanted: Synthesis, places: list[float]
+) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """The output and its velocity at values of the drive."""
+    kind, name = output_of(mechanism, wanted)
+    data = motion(mechanism, at=places)
+    if kind == "angle":
+        angle = np.unwrap(data.angle.sel(link=name).to_numpy())
+        return angle, data.angular_velocity.sel(link=name).to_numpy()
+    column = data.guide.to_numpy().tolist().index(name)
+    return data.slide.to_numpy()[:, column], data.slide_velocity.to_numpy()[:, column]
+
+
+def _limit_places(mechanism: Mechanism, wanted: Synthesis) -> list[float]:
+    """Values of the drive [rad] at which the output turns back, over one turn."""
+    # off the round angles at which limit positions like to lie
+    turn = np.linspace(0.0, 2 * math.pi, CHECKED_PLACES) + start_of(mechanism) + OFF_ROUND
+    _values, speeds = _output_at(mechanism, wanted, turn.tolist())
+    cells = np.flatnonzero(speeds[:-1] * speeds[1:] < 0)
+    low, high, rises = turn[cells], turn[cells + 1], speeds[cells] > 0
+    for _round in range(ROUNDS if len(cells) else 0):
+        places = low + (high - low) * np.linspace(0.0, 1.0, PARTS + 1)[:, None]
+        found = _output_at(mechanism, wanted, places.ravel().tolist())[1].reshape(places.shape)
+        before = np.maximum((np.where(rises, found, -found) > 0).sum(axis=0), 1)
+        column = np.arange(len(cells))
+        low, high = places[before - 1, column], places[np.minimum(before, PARTS), column]
+    return [float(end) for end in (low + high) / 2]
+
+
+def _construct(mechanism: Mechanism, wanted: Synthesis) -> Construction | None:
+    """Both limit positions, by the engine, and the circle through O and the ends of what the crank moves."""
+    places = _limit_places(mechanism, wanted)
+    if len(places) != 2:
+        return None
+    data = motion(mechanism, at=places)
+    at = {str(name): data.position.sel(point=name).to_numpy() @ (1, 1j) for name in data.point.to_numpy()}
+    slotted = wanted.topology in ("shaper", "whitworth-quick-return")
+    tip = output_of(mechanism, wanted)[1] if slotted or wanted.topology == "slider-crank-offset" else "B"
+    lines = [
+        np.array([at[name][side] for name in link.coordinates])
+        for side in (0, 1)
+        for link in mechanism.links.values()
+        if len(link.coordinates) > 1
+    ]
+    turn = np.exp(1j * np.linspace(0.0, 2 * math.pi, 181))
+    frame = np.array(list(mechanism.frame.points.values()), dtype=np.float64) @ (1, 1j)
+    fixed = dict(zip(mechanism.frame.points, frame.tolist(), strict=True))
+    home, ends = fixed["O"], at[tip]
+    none = np.empty(0, dtype=np.complex128)
+    return Construction(
+        ends, tuple(lines), home + abs(at["A"][0] - home) * turn,
+        none if slotted else _circle_through(home, complex(ends[0]), complex(ends[1]), turn),
+        frame,
+    )  # fmt: skip
+
+
+def _circle_through(first: complex, second: complex, third: complex, turn: Complex) -> Complex:
+    """The circle through three points; empty where they lie in one line, as with the time ratio one."""
+    one, two = second - first, third - first
+    cross = (one.conjugate() * two).imag
+    if abs(cross) < 1e-9 * abs(one) * abs(two):
+        return np.empty(0, dtype=np.complex128)
+    centre = 1j * (one * abs(two) ** 2 - two * abs(one) ** 2) / (2 * cross)
+    circle: Complex = first + centre + abs(centre) * turn
+    return circle
 
 
 def _describe(task: SynthesisTask, title: str, **parts: Any) -> Mechanism:

@@ -233,6 +233,8 @@ def _pictures(results: SynthesisResults) -> Iterator[tuple[str, Picture]]:
         yield "answers", _map(results, title)
     if results.curves:
         yield "curves", _pose_curves(results, title)
+    if results.construction is not None:
+        yield "construction", _limit_positions(results, title)
     if results.values is not None:
         yield "errors", _errors(results, title)
 
@@ -264,7 +266,7 @@ def _map(results: SynthesisResults, title: Title) -> CurveMap:
                 (curve,),
                 _planar(results.targets),
                 tuple(_skeleton(answer)),
-                np.array([place[:2] for place in answer.mechanism.frame.points.values()], dtype=np.float64),
+                np.array(list(answer.mechanism.frame.points.values()), dtype=np.float64)[:, :2],
                 _arrows(results),
             )
         )
@@ -302,6 +304,21 @@ def _arrows(results: SynthesisResults) -> Array | None:
     spread = float(np.abs(results.targets - results.targets.mean()).max()) or 1.0
     ends = results.targets + 0.3 * spread * np.exp(1j * rows[: len(results.targets), 2])
     return np.stack([_planar(results.targets), _planar(ends)], axis=1)
+
+
+def _limit_positions(results: SynthesisResults, title: Title) -> CurveMap:
+    """Both limit positions of the best answer, with the circle from which the stroke is seen at one angle."""
+    drawn = results.construction
+    assert drawn is not None
+    curves = [MapCurve(Sentence("circle of the crank's pin"), _planar(drawn.pin), 0)]
+    if len(drawn.sight):
+        curves.append(MapCurve(Sentence("circle that sees the stroke at theta"), _planar(drawn.sight), 1))
+    panel = MapPanel(
+        NOTHING, tuple(curves), _planar(drawn.ends), tuple(map(_planar, drawn.links)), _planar(drawn.fixed)
+    )
+    return CurveMap(
+        Sentence("Limit positions"), title, *_labels(results), Sentence("ends of the stroke"), (panel,)
+    )
 
 
 def _pose_curves(results: SynthesisResults, title: Title) -> CurveMap:
