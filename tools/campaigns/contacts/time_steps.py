@@ -80,7 +80,7 @@ def run_steps(
         inverse = np.linalg.pinv(along, rcond=RANK) if len(along) else np.zeros((len(q), 0))
 
         def free(x: Array, along: Array = along, inverse: Array = inverse) -> Array:
-            return x - inverse @ (along @ x)
+            return np.asarray(x - inverse @ (along @ x))
 
         pushed = v + h * equations.root @ (equations.root.T @ equations.force)
         y = free(np.linalg.solve(equations.root, pushed))

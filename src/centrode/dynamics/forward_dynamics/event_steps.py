@@ -29,7 +29,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Contact,
     ContactMode,
 )
-from centrode.dynamics.forward_dynamics.equations_of_motion import DEPENDENT, EquationsOfMotion
+from centrode.dynamics.forward_dynamics.equations_of_motion import IMPLIED, EquationsOfMotion
 from centrode.dynamics.forward_dynamics.motion_problem import (
     CONDITION,
     CONTROLS,
@@ -735,7 +735,7 @@ class EventWatch:
         if rows:
             along = np.linalg.solve(felt.mobility[rows][:, rows], felt.mobility[rows, row])
             pivot -= float(felt.mobility[row, rows] @ along)
-        return bool(pivot <= DEPENDENT * felt.loose[row])
+        return bool(pivot <= IMPLIED * felt.loose[row])
 
     def _first_to_slip(
         self,
