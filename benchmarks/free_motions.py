@@ -12,7 +12,12 @@ from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-from tools.campaigns.free_motions.references import chain_of_squares, position_of_squares
+from tools.campaigns.free_motions.references import (
+    LIBRARY,
+    chain_of_squares,
+    position_of_squares,
+    squeezer,
+)
 
 import centrode as ct
 from benchmarks.table import Promise, Row
@@ -24,6 +29,8 @@ from centrode.numerics.machine_code import cache
 CRANK, COUPLER, ROCKER, BASE = 0.3, 0.8, 0.6, 0.9
 START, SPEED, MOMENT, DURATION = math.pi / 3, 10.0, 0.1, 10.0
 LANES, LOOPS = 10_000, 40
+SQUEEZED, TURNED = 0.05, 33.81534072136017377697757
+"""Duration of A03 [s], and the angle of its crank then [rad] by quadrature of the energy to 25 digits."""
 STEP, SOLREF = 2.5e-5, 2e-4
 """MuJoCo's step [s] and time constant of a closure [s], with which its energy errs by some 3e-7 J."""
 
@@ -126,6 +133,15 @@ def free_motions() -> Iterator[Row]:
             Promise("energy error over MuJoCo's", error / theirs, at_most=1.0),
         ],
     )
+    taken, apart = _andrews()
+    yield Row(
+        "A03, 0.05 s",
+        {"steps [ms]": 1e3 * taken, "F off [m]": apart},
+        promises=[
+            Promise("steps of A03 [ms]", 1e3 * taken, at_most=1.0),
+            Promise("position of F of A03 [m]", apart, at_most=1e-9),
+        ],
+    )
     # what a process loads for it: modules of the package, llvmlite, and dask, which xarray imports where it is there
     for name, words in (("without dask", ("without dask",)), ("with dask", ())):
         loaded, simulated, again = _fresh_process(*words)
@@ -171,6 +187,23 @@ def free_motions() -> Iterator[Row]:
             Promise(f"position of B0 with {LOOPS} loops over 20 s [m]", apart, at_most=1e-6),
         ],
     )
+
+
+def _andrews() -> tuple[float, float]:
+    """Time [s] of the steps of IFToMM's A03, and how far F is from the quadrature of its energy at 0.05 s [m]."""
+    free = free_motion_of(squeezer(LIBRARY).with_drives_held())
+    start = free.initial()
+    rate = free.integration.rate(start, SQUEEZED)
+    state = np.concatenate(
+        [[0.0, min(SQUEEZED, 0.01 / rate), 0.0, 0.0], free.integration.carried_values(start)]
+    )[:, None]
+    rows = np.empty((4096, len(free.integration.problem.carried) + 1))
+    kernel, numbers = free.integration.integrator(), free.integration.parameters(SQUEEZED, 1e-8, rate)
+    taken = best_clock_times(
+        {"steps": functools.partial(kernel.run, numbers, state, 1_000_000, rows)}, rounds=20
+    )["steps"]
+    angle = free.integrate(start, SQUEEZED, 1e-8, at=[SQUEEZED]).angles[0, free.links.index("OF")]
+    return taken, 0.007 * abs(float(angle) - TURNED)
 
 
 def _distance_from_closed_form(chain: FreeMotion, upright: InitialState) -> float:

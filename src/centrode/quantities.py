@@ -474,14 +474,6 @@ FORCES = (
     Quantity("occasion_time", "t", "s", mark("time of an occasion")),
     Quantity("occasion_value", "q", "rad", mark("value of the drive at an occasion"), by_drive=-1),
     Quantity("occasion_kind", "", "1", mark("kind of an occasion")),
-    Quantity("occasion_part", "", "1", mark("part that an occasion belongs to")),
-    Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
-    Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
-    Quantity(
-        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
-    ),
-    Quantity("controller_output", "u", "N m", mark("output of a controller")),
-    Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
     Quantity("stability", "", "1", mark("stability of an equilibrium")),
     Quantity("growth_rate", "σ", "1/s", mark("real part of an eigenvalue: how fast a departure grows")),
     Quantity(
@@ -510,6 +502,14 @@ FORCES = (
     Quantity(
         "critical_frequency", "ω", "rad/s", mark("frequency of oscillations that begin at a critical value")
     ),
+    Quantity("occasion_part", "", "1", mark("part that an occasion belongs to")),
+    Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
+    Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
+    Quantity(
+        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
+    ),
+    Quantity("controller_output", "u", "N m", mark("output of a controller")),
+    Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),
 )
 
 

@@ -38,9 +38,10 @@ DIMENSIONS = frozenset(
         *("sample", "point", "link", "guide", "rolling", "drive", "drive_2", "drive_3", "axis", "event"),
         *("mechanism", "joint", "group", "pair", "constraint", "load", "jump", "order", "coefficient"),
         *("side", "side_point", "side_link", "held", "gear", "gear_body", "friction", "occasion"),
-        *("contact", "controller"),
         *(
             "coordinate",
+            "contact",
+            "controller",
             "source",
             "equilibrium",
             "mode",

@@ -123,6 +123,33 @@ def test_momentum_about_a_free_axis_stays() -> None:
     assert np.max(np.abs(course.energy_residual)) <= 1e-10
 
 
+def test_momentum_about_the_vertical_stays_on_the_sphere() -> None:
+    """Two arcs on a vertical axis under their weights, which give no moment about it; sums over places of the arcs."""
+    parts = {
+        "space": "sphere",
+        "gravity": [0.0, 0.0, -9.81],
+        "frame": {"points": {"Z": [0, 0, 1], "X": [1, 0, 0]}},
+        "links": {
+            "ZA": {"length": 1.0, "reference": ["Z", "X"], "mass": 1.0, "shape": "arc", "angle": 0.3},
+            "AB": {"length": 0.6, "reference": ["A", "Z"], "mass": 0.7, "shape": "arc", "angle": 0.8},
+        },
+    }
+    free = free_motion_of(mechanism(parts))
+    course = free.integrate(free.initial({"links.ZA": 2.0, "links.AB": -3.0}), 3.0, TIGHT, samples=31)
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    momentum = np.zeros(31)
+    for ends, length, mass in ((("Z", "A"), 1.0, 1.0), (("A", "B"), 0.6, 0.7)):
+        first, last = (free.points.index(name) for name in ends)
+        for share, weight in zip(0.5 + 0.5 * nodes, 0.5 * weights, strict=True):
+            own = np.array([math.sin((1.0 - share) * length), math.sin(share * length)]) / math.sin(length)
+            place, velocity = (
+                own[0] * x[:, first] + own[1] * x[:, last] for x in (course.places, course.velocities)
+            )
+            momentum += mass * weight * (place[:, 0] * velocity[:, 1] - place[:, 1] * velocity[:, 0])
+    assert np.max(np.abs(momentum - momentum[0])) <= 1e-10 * abs(momentum[0])
+    assert np.ptp(course.speeds[:, 0]) > 1.0
+
+
 def test_halved_steps_err_by_a_256th() -> None:
     """Steps of equal length, each closed: the scheme keeps its order 8 through the projections."""
     free = free_motion_of(mechanism(slider_crank()))

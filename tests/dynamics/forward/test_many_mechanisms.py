@@ -89,3 +89,9 @@ def test_threads_are_a_small_number() -> None:
     mechanism = ct.parse_mechanism(FOUR_BAR)
     with pytest.raises(ct.InputError, match="threads"):
         ct.simulate(mechanism, settings(mechanism), vary={"links.AB.length": [0.3]}, threads=0)
+
+
+def test_the_start_alone_may_be_requested() -> None:
+    mechanism = ct.parse_mechanism(DOUBLE_PENDULUM)
+    many = ct.simulate(mechanism, settings(mechanism), at=[0.0], vary={"links.OA.mass": [1.0, 2.0]})
+    assert np.all(many.generalised_coordinate.values == 0.0) and many.attrs["mechanisms_whole"] == 2

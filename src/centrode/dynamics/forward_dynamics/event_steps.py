@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
+from importlib import import_module
 from math import inf, isnan, nan
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 
 from centrode.dynamics.forward_dynamics.bounded_forces import forces_within, impulses_of_impact
 from centrode.dynamics.forward_dynamics.contacts import (
@@ -77,6 +77,9 @@ if TYPE_CHECKING:
     from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+# motions without contacts seek no instants, and SciPy takes longer to load than they take
+_optimize = partial(import_module, "scipy.optimize")
 
 _END = CONTROLS.index(END)
 ROOT = 1e-16
@@ -325,7 +328,7 @@ class EventWatch:
                 return start.copy(), frozenset(int(k) for k in passed)
         final = end
         if low < end:
-            final = float(brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
+            final = float(_optimize().brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
         if not final > begin:
             return start.copy(), frozenset(int(k) for k in passed)
         ends[0] = final

@@ -161,7 +161,8 @@ class MotionIntegration:
             accelerations, _forces, _flags = self.equations.accelerations(ARRAYS, terms)
         fast = float(np.max(np.abs(start.speeds) / units, initial=0.0))
         bent = float(np.max(np.abs(np.array(accelerations, dtype=np.float64)) / units, initial=0.0))
-        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0, 1.0 / duration)
+        least = 1.0 / duration if duration > 0.0 else 0.0
+        rate = max(fast, np.sqrt(bent) if isfinite(bent) else 0.0, least)
         return rate if rate > 0.0 else 1.0
 
     def carried_values(self, start: InitialState) -> Array:

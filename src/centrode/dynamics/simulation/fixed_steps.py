@@ -74,6 +74,10 @@ class RightSide:
     acting: tuple[tuple[int, float], ...]
 
 
+Panel: TypeAlias = tuple[list[Series], list[float], Function]
+"""Series that are evaluated, values of those that are constant, and the function of both."""
+
+
 class StepSlopes:
     """Right sides of the equation of motion as plain numbers, for one state after the other.
 
@@ -88,6 +92,7 @@ class StepSlopes:
         # an empty panel: the first state looks up its own
         self.low, self.high = 1.0, -1.0
         self.functions: dict[RightSide, Function] = {}
+        self.panels: dict[tuple[object, ...], Panel] = {}
         formulas = [(SORTS.index(term.sort), term.effort) for term in field.tracks.rows.formulas]
         # a table looks rows up in arrays; as a formula it is compared with a row after the other
         self.laws = [
@@ -119,14 +124,26 @@ class StepSlopes:
         inside = min(max(value, leg.low), leg.high) + shift
         panel = min(max(bisect_right(edges, inside) - 1, 0), len(edges) - 2)
         low, high = edges[panel], edges[panel + 1]
-        powers = leg.powers[panel].copy()
-        if leg.grown is not None:
-            powers[:, 0] += leg.grown
         # a stretch that begins where the motion ends is empty
         self.factor = 2.0 / (high - low) if high > low else 0.0
         self.offset = self.factor * (shift - 0.5 * (low + high))
         self.sense = sense
         self.low, self.high = max(low - shift, leg.low), min(high - shift, leg.high)
+        grown = leg.grown is not None and bool(leg.grown.any())
+        # the stretches of a period come back again and again, and stay where they are
+        key = id(leg.powers), panel, sense, leg.gates, leg.senses
+        found = None if grown else self.panels.get(key)
+        if found is None:
+            found = self._panel(leg, panel, sense)
+            if not grown:
+                self.panels[key] = found
+        self.series, self.constants, self.function = found
+
+    def _panel(self, leg: FieldLeg, panel: int, sense: float) -> Panel:
+        """What is evaluated on a panel."""
+        powers = leg.powers[panel].copy()
+        if leg.grown is not None:
+            powers[:, 0] += leg.grown
         first = FORWARDS if sense > 0.0 else BACKWARDS
         rows = [INERTIA, SLOPE, *range(first, first + len(SORTS))]
         acting = []
@@ -140,19 +157,15 @@ class StepSlopes:
                 powers[own + SPEED] *= "v" in law.uses
                 acting.append((j, leg.senses[j]))
                 rows += [own + COORDINATE, own + SPEED, own + ALONG]
-        self._choose_function([_series(powers[row]) for row in rows], tuple(acting))
-
-    def _choose_function(self, rows: list[Series], acting: tuple[tuple[int, float], ...]) -> None:
-        """What is evaluated on a panel: each series once, and the function of their values."""
+        each = [_series(powers[row]) for row in rows]
         # a joint that a load turns in often moves as what the load works along does, or as another one
-        self.series = list(dict.fromkeys(row for row in rows if len(row) > 1))
-        single = list(dict.fromkeys(row for row in rows if len(row) == 1))
-        self.constants = [row[0] for row in single]
-        places = {row: k for k, row in enumerate([*self.series, *single])}
-        side = RightSide(tuple(places.get(row, NOTHING) for row in rows), acting)
+        series = list(dict.fromkeys(row for row in each if len(row) > 1))
+        single = list(dict.fromkeys(row for row in each if len(row) == 1))
+        places = {row: k for k, row in enumerate([*series, *single])}
+        side = RightSide(tuple(places.get(row, NOTHING) for row in each), tuple(acting))
         if side not in self.functions:
             self.functions[side] = self._traced(side)
-        self.function = self.functions[side]
+        return series, [row[0] for row in single], self.functions[side]
 
     def _traced(self, side: RightSide) -> Function:
         """A function of time, value and rate of the drive and the values of the series, laws and all."""
