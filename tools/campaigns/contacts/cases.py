@@ -17,7 +17,7 @@ from tools.campaigns.free_motions.dense_equations import DenseMechanism
 from tools.campaigns.grown.plane import KINDS, grown
 
 Parts = dict[str, Any]
-DURATION, COARSE = 0.5, 160
+DURATION, COARSE = 0.5, 80
 """Seconds, and equal steps of the longest kind."""
 TOLERANCE = 1e-11
 BOOKS, GAINED, SUNK = 1e-9, 1e-12, 1e-11

@@ -66,7 +66,8 @@ def run_steps(
     equations, h = dense.equations, end / count
     q, v = dense.start.copy(), np.zeros_like(dense.start)
     run = Run(q, v)
-    stuck = [False] * len(rubbing)
+    # it begins at rest, where friction holds as much as it can
+    stuck = [True] * len(rubbing)
     spins = np.array([_spin_row(dense, one) for one in rubbing]).reshape(len(rubbing), len(q))
     for step in range(count):
         middle = q + 0.5 * h * v
@@ -80,7 +81,7 @@ def run_steps(
         inverse = np.linalg.pinv(along, rcond=RANK) if len(along) else np.zeros((len(q), 0))
 
         def free(x: Array, along: Array = along, inverse: Array = inverse) -> Array:
-            return x - inverse @ (along @ x)
+            return np.asarray(x - inverse @ (along @ x))
 
         pushed = v + h * equations.root @ (equations.root.T @ equations.force)
         y = free(np.linalg.solve(equations.root, pushed))

@@ -63,6 +63,8 @@ _NO_LAYOUT: Any = None
 _NO_VALUE = float("nan")
 DEPENDENT = 1e-5
 """An equation that others imply is left out where its pivot is below this share of its diagonal."""
+IMPLIED = 1e-10
+"""The same of a contact: what the closures hardly move must be held all the same, lest it creep."""
 
 
 @dataclass(frozen=True)
@@ -483,7 +485,8 @@ class EquationsOfMotion:
             if row not in self.dependent and row not in behind:
                 return 1.0 / pivot
             if flags is None:
-                chosen[row] = m.less(DEPENDENT * diagonal[row], pivot)
+                least = IMPLIED if row in behind else DEPENDENT
+                chosen[row] = m.less(least * diagonal[row], pivot)
                 if row in behind:
                     chosen[row] = m.both((active or {})[row], chosen[row])
             else:

@@ -29,7 +29,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Contact,
     ContactMode,
 )
-from centrode.dynamics.forward_dynamics.equations_of_motion import DEPENDENT, EquationsOfMotion
+from centrode.dynamics.forward_dynamics.equations_of_motion import IMPLIED, EquationsOfMotion
 from centrode.dynamics.forward_dynamics.motion_problem import (
     CONDITION,
     CONTROLS,
@@ -300,14 +300,19 @@ class EventWatch:
         self._put(start, before)
         ends = self._of_one_step[_END]
         watched = [int(row) for row in rows]
-        column = found[:, 0]
+        column, single = found[:, 0], watched[0]
+        # both ends are known already
+        known = {begin: 1.0, end: float(np.min(state[rows, 0]))}
 
         def at(time: float) -> float:
-            if not time > begin:
-                return 1.0
+            value = known.get(time)
+            if value is not None:
+                return value
             ends[0] = time
             attempt()
-            return float(min(column.item(row) for row in watched))
+            if len(watched) == 1:
+                return column.item(single)
+            return min(column.item(row) for row in watched)
 
         low = begin
         if float(np.min(before[rows - HEADER + 1])) <= 0.0:
@@ -326,7 +331,8 @@ class EventWatch:
             final = float(_optimize().brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
         if not final > begin:
             return start.copy(), frozenset(int(k) for k in passed)
-        at(final)
+        ends[0] = final
+        attempt()
         least = found[rows, 0]
         due = [int(k) for k, value in zip(passed, least, strict=True) if value <= self._due_below(int(k))]
         if not due:
@@ -526,7 +532,7 @@ class EventWatch:
         rows = [self._rows[k] for k in numbers]
         signs = np.array([-taken[k] or 1.0 for k in numbers])
         is_stop = np.array([self.contacts[k].kind == STOP for k in numbers])
-        matrix = signs[:, None] * felt.mobility[np.ix_(rows, rows)] * signs
+        matrix = signs[:, None] * felt.mobility[rows][:, rows] * signs
         before = signs * felt.speeds[numbers]
         before[[k not in hits for k in numbers]] = 0.0
         restitution = [self.contacts[k].restitution for k in numbers]
@@ -541,7 +547,7 @@ class EventWatch:
         if resting:
             # the rest of infinitely many impacts at once: their sum is that of one without restitution
             now, more = signs * behind.speeds[numbers], np.zeros(len(numbers))
-            own = matrix[np.ix_(resting, resting)]
+            own = matrix[resting][:, resting]
             more[resting] = np.linalg.lstsq(own, -now[resting], rcond=1e-11)[0]
             then = now + matrix @ more
             self._apply(state, behind, numbers, signs * more, 0.5 * more * (now + then))
@@ -598,7 +604,7 @@ class EventWatch:
         if not held:
             return float(right[row])
         rows = [self._rows[k] for k in held]
-        forces = np.linalg.lstsq(felt.mobility[np.ix_(rows, rows)], -right[rows], rcond=1e-11)[0]
+        forces = np.linalg.lstsq(felt.mobility[rows][:, rows], -right[rows], rcond=1e-11)[0]
         return float(right[row] + felt.mobility[row, rows] @ forces)
 
     def _slipping(self, state: Array, felt: ContactForces) -> Array:
@@ -738,7 +744,7 @@ class EventWatch:
         if rows:
             along = np.linalg.solve(felt.mobility[rows][:, rows], felt.mobility[rows, row])
             pivot -= float(felt.mobility[row, rows] @ along)
-        return bool(pivot <= DEPENDENT * felt.loose[row])
+        return bool(pivot <= IMPLIED * felt.loose[row])
 
     def _first_to_slip(
         self,
