@@ -25,7 +25,7 @@ import centrode as ct
 from centrode.dynamics.motion_results import study
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.pictures import figures_of
-from centrode.topics.registry import RUN
+from centrode.topics.kinematics import RUN
 from centrode.topics.sheets import sheet_with_parts
 mechanism = ct.example("{name}")
 pictures = sheet_with_parts(RUN, study(mechanism)).pictures

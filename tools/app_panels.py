@@ -1,12 +1,12 @@
 """Look at every panel of the workbench: in each language, at three widths, by day and at night.
 
-python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square]
+python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square] [--blind]
 
-For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day
-or at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut,
-letters that are too small, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and
-what of a Russian or Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two
-narrower widths. It needs a Chromium and playwright, as the tests of pages do.
+For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day or
+at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut, small
+letters, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and what of a Russian or
+Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two narrower widths. It
+needs a Chromium and playwright, as the tests of pages do.
 """
 
 from __future__ import annotations
@@ -113,6 +113,7 @@ class Findings:
     wrong: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
     foreign: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     audits: int = 0
+    panels: int = 0
     pictures: dict[tuple[str, int], dict[tuple[str, str], Path]] = field(
         default_factory=lambda: defaultdict(dict)
     )
@@ -178,6 +179,9 @@ def look(
     for wide in WIDTHS:
         window.set_viewport_size({"width": wide, "height": HEIGHT})
         settle(window)
+        turn = LANGUAGES.index(language) + WIDTHS.index(wide)
+        if arguments.square and SCHEMES.index(scheme) != turn % 2:
+            continue  # each language at each width, by day or at night
         said = [*dict.fromkeys(window.evaluate(FITS))]
         if arguments.audit and wide in AUDITED:
             found.audits += 1
@@ -185,9 +189,8 @@ def look(
         for one in said:
             found.wrong[name, one].append(f"{language} {wide} {scheme}")
             print(f"{name}: {one} [{language} {wide} {scheme}]", flush=True)
-        turn = LANGUAGES.index(language) + WIDTHS.index(wide)
-        if arguments.square and SCHEMES.index(scheme) != turn % 2:
-            continue  # each language at each width, by day or at night
+        if arguments.blind:
+            continue
         file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
         picture(window).save(file)
         found.pictures[name, wide][language, scheme] = file
@@ -223,6 +226,7 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
                         continue
                     seen.add(topic)
                     open_panel(window, topic)
+                    found.panels += 1
                     look(window, key, (language, scheme), found, arguments)
                     window.set_viewport_size({"width": WIDTHS[-1], "height": HEIGHT})
                 for message in said:
@@ -257,6 +261,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--languages", nargs="+", default=LANGUAGES, choices=LANGUAGES)
     parser.add_argument("--audit", action="store_true")
     parser.add_argument("--square", action="store_true")
+    parser.add_argument("--blind", action="store_true", help="write no sheets")
     arguments = parser.parse_args(words)
     (arguments.folder / "views").mkdir(parents=True, exist_ok=True)
     found = Findings()

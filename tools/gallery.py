@@ -1,4 +1,4 @@
-"""Make the gallery: a small picture of every built-in mechanism with the paths of its points, and the page.
+"""Make the gallery: a small picture of every built-in mechanism, pair and train of gears, and the page.
 
     python -m tools.gallery [NAME ...]
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,12 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
+from centrode.animation.gears import MeshLayer
+from centrode.gears.profiles import wheel_outline
+from centrode.render.drawing.style import PALETTE
 from centrode.render.figures.linkages import draw, initial_sample, read_scene
 from centrode.scenes.sphere import Globe
+from centrode.views.gear_train import wheels_drawing
 
 DOCS = Path(__file__).parents[1] / "docs"
 FOLDER = DOCS / "images" / "gallery"
@@ -29,6 +34,12 @@ HEAD = """# Gallery
 All built-in mechanisms, each with the paths of its points; `centrode run NAME` computes it, `centrode examples NAME`
 prints its description. Made by `python -m tools.gallery`.
 """
+HEAD_OF_GEARS = """## Gears
+
+Pairs (`centrode gears NAME`) with their contacts on the line of action, pitch circles of trains
+(`centrode trains NAME`).
+"""
+GEARS = ("gear pair", "gear train")
 
 
 def picture(name: str) -> bytes:
@@ -49,6 +60,30 @@ def picture(name: str) -> bytes:
     return _small(figure)
 
 
+def picture_of_gears(name: str) -> bytes:
+    """Teeth of a pair in mesh, or pitch circles of a train, as a small PNG."""
+    figure = Figure(figsize=(INCHES, INCHES))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    if name in ct.example_names("gear pair"):
+        results = ct.gear_pair(name)
+        layer = MeshLayer(results.geometry, [wheel_outline(profile) for profile in results.profiles], 1, 1.0)
+        (left, low), (right, high) = layer.reach()
+        layer.ground(axes)
+        layer.draw(axes, 0)
+        axes.set_xlim(left, right)
+        axes.set_ylim((low + high) / 2 - (right - left) / 2, (low + high) / 2 + (right - left) / 2)
+    else:
+        drawing = wheels_drawing(ct.gear_train(name))
+        for piece in drawing.pieces:
+            axes.plot(*piece.places.T, color=PALETTE[piece.layer != "profile"], linewidth=1.4)
+        for shape in drawing.shapes:
+            for line in shape.lines:
+                axes.plot(*line.T, color=PATH, linewidth=1.0)
+        axes.set_aspect("equal")
+    axes.set_axis_off()
+    return _small(figure)
+
+
 def _small(figure: Figure) -> bytes:
     """A figure as a PNG of few colours."""
     drawn, kept = io.BytesIO(), io.BytesIO()
@@ -60,13 +95,18 @@ def _small(figure: Figure) -> bytes:
 
 def page() -> str:
     """The page: pictures side by side, each with its title and its name."""
-    names = ct.example_names("linkage")
+    linkages = _table(ct.example_names("linkage"))
+    gears = _table([name for kind in GEARS for name in ct.example_names(kind)])
+    return f"{HEAD}\n{linkages}\n{HEAD_OF_GEARS}\n{gears}"
+
+
+def _table(names: Sequence[str]) -> str:
     rows = []
     for start in range(0, len(names), COLUMNS):
         cells = [_cell(name) for name in names[start : start + COLUMNS]]
         rows.append("| " + " | ".join(cells + [""] * (COLUMNS - len(cells))) + " |")
     heads = "|" + " |" * COLUMNS + "\n" + "|" + "---|" * COLUMNS
-    return f"{HEAD}\n{heads}\n" + "\n".join(rows) + "\n"
+    return f"{heads}\n" + "\n".join(rows) + "\n"
 
 
 def _cell(name: str) -> str:
@@ -77,8 +117,10 @@ def _cell(name: str) -> str:
 def main(names: list[str]) -> None:
     """Write the pictures."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for name in names or ct.example_names("linkage"):
-        (FOLDER / f"{name}.png").write_bytes(picture(name))
+    of_gears = [name for kind in GEARS for name in ct.example_names(kind)]
+    for name in names or [*ct.example_names("linkage"), *of_gears]:
+        made = picture_of_gears(name) if name in of_gears else picture(name)
+        (FOLDER / f"{name}.png").write_bytes(made)
 
 
 if __name__ == "__main__":

@@ -62,10 +62,12 @@ from .dynamics.force_polygons.polygons import force_polygons as force_polygons
 from .dynamics.steady_motion.steady import steady_motion as steady_motion
 from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.simulation.simulate import simulate as simulate
-from .dynamics.equilibria.equilibrium import equilibrium as equilibrium
-from .dynamics.equilibria.modes import modes as modes
 from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
+
+# Equilibria and vibration
+from .dynamics.equilibria.equilibrium import equilibrium as equilibrium
+from .dynamics.equilibria.modes import modes as modes
 
 # Gears
 from .gears.results import gear_pair as gear_pair
@@ -99,6 +101,7 @@ from .tolerances.allocation import allocate_tolerances as allocate_tolerances
 from .synthesis.requests import SynthesisTask as SynthesisTask
 from .synthesis.requests import read_synthesis as read_synthesis
 from .synthesis.synthesise import synthesise as synthesise
+from .synthesis.improvement import improve as improve
 
 # Any result, shown
 from .topics.presentation import summary as summary

@@ -15,9 +15,9 @@ from PIL import Image
 
 import centrode as ct
 from centrode.animation.animate import Shown
-from centrode.animation.cams import FollowerLayer
+from centrode.animation.cams import FollowerLayer, follower_captions
 from centrode.animation.frames import course_of, film_of
-from centrode.animation.layers import Layer, follower_captions, instant_captions, scene_of_film
+from centrode.animation.layers import Layer, instant_captions, scene_of_film
 from centrode.animation.linkages import LinksLayer
 from centrode.animation.video_files import Pace
 from centrode.cams.followers.geometry import FollowerCam

@@ -300,6 +300,123 @@ def test_what_else_a_hand_does_is_done_by_keyboard(running: Any, server: Served)
         assert one.messages == []
 
 
+def test_the_other_keys_and_buttons_by_keyboard(running: Any, server: Served) -> None:
+    """Modes, view, player, text, deletion, join, mirror images, names, rows, locks, files: without a pointer."""
+    with bench(running, server.address) as one:
+        press, focus = one.page.keyboard.press, one.page.focus
+        one.page.locator('[data-do="open"]').focus()
+        press("Enter")
+        one.page.locator('[data-template="crank-rocker"]').focus()
+        one.gesture(lambda: press("Enter"))
+        one.motion()
+        first = one.text
+        focus(".stage-holder .drawing")
+        for key, mode in zip("gemd", ("guide", "edit", "move", "draw"), strict=True):
+            press(key)
+            assert one.page.get_attribute(f'.modes [data-mode="{mode}"]', "aria-pressed") == "true"
+        apart = math.dist(one.spot("O"), one.spot("D"))
+        press("+")
+        frames(one.page)
+        assert math.dist(one.spot("O"), one.spot("D")) == pytest.approx(1.25 * apart, rel=1e-3)
+        press("-")
+        press("f")
+        frames(one.page)
+        assert math.dist(one.spot("O"), one.spot("D")) == pytest.approx(apart, rel=1e-3)
+        press("m")
+        press(".")
+        press(".")
+        press(",")
+        assert float(one.page.input_value('[data-do="seek"]')) == 1.0
+        press("p")
+        one.until(lambda: float(one.page.input_value('[data-do="seek"]')) > 2.0)
+        press("p")
+        focus('[data-do="seek"]')
+        press("Home")
+        assert float(one.page.input_value('[data-do="seek"]')) == 0.0
+        focus(".stage-holder .drawing")
+        press("t")
+        one.page.wait_for_selector(".cm-content")
+        one.page.locator(".text-pane .plain").focus()
+        press("Enter")
+        one.until(lambda: one.page.locator(".text-pane").count() == 0)
+        focus('[data-kind="link"][data-name="AB"]')
+        press(" ")
+        one.page.locator(".dimension button").first.focus()
+        one.gesture(lambda: press("Enter"))
+        assert "locked links.AB.length" in one.text
+        for row in ("mass", "load"):
+            name = "AB" if row == "mass" else "B"
+            focus(f'[data-kind="{"link" if row == "mass" else "point"}"][data-name="{name}"]')
+            press(" ")
+            focus(f'[data-row="{row}"]')
+            one.gesture(lambda: press("Enter"))
+        assert "mass" in one.tables["links"]["AB"] and one.tables["loads"][0]["point"] == "B"
+        one.page.locator(".rename input").fill("K")
+        one.gesture(lambda: one.page.locator(".rename input").press("Enter"))
+        assert "K" in one.names("point") and one.tables["loads"][0]["point"] == "K"
+        while one.text != first:
+            press("Control+z") if one.page.evaluate("document.activeElement.tagName") != "INPUT" else focus(
+                ".stage-holder .drawing"
+            )
+        one.motion()
+        for name in ("mirror-upright", "mirror-level"):
+            focus('[data-kind="point"][data-name="A"]')
+            press(" ")
+            focus('[data-kind="point"][data-name="B"]')
+            press("Shift+ ")
+            focus(f'[data-do="{name}"]')
+            one.gesture(lambda: press("Enter"))
+            focus(".stage-holder .drawing")
+            one.gesture(lambda: press("Control+z"))
+        assert one.text == first
+        focus('[data-kind="link"][data-name="AB"]')
+        press(" ")
+        one.gesture(lambda: press("Delete"))
+        assert "AB" not in one.names("link")
+        press("Control+o")
+        one.page.wait_for_selector("dialog.open")
+        press("Escape")
+        one.wait("document.querySelector('dialog') === null")
+        assert one.messages == []
+
+
+def test_a_joint_dropped_on_another_one_is_joined(running: Any, server: Served) -> None:
+    """By hand in Edit, and by the button of two that are selected; on the globe an arrow key turns it in Move."""
+    with bench(running, server.address) as one:
+        one.draw((0.25, 0.7), (0.33, 0.5))
+        one.draw((0.55, 0.4), (0.7, 0.7))
+        assert one.names("link") == ["AB", "CD"]
+        apart = one.text
+        one.mode("edit")
+        one.gesture(lambda: one.drag("C", "B"))
+        assert len(one.names("point")) == 3
+        joined = one.text
+        one.page.focus(".stage-holder .drawing")
+        one.gesture(lambda: one.page.keyboard.press("Control+z"))
+        assert one.text == apart
+        for key, name in ((" ", "C"), ("Shift+ ", "B")):
+            one.page.focus(f'[data-kind="point"][data-name="{name}"]')
+            one.page.keyboard.press(key)
+        one.page.focus('[data-do="join"]')
+        one.gesture(lambda: one.page.keyboard.press("Enter"))
+        assert one.text == joined
+        one.template("spherical-four-bar")
+        one.motion()
+        one.mode("move")
+        one.page.focus(".stage-holder .drawing")
+        before = one.spot("B")
+        one.page.keyboard.press("ArrowRight")
+        frames(one.page)
+        assert one.spot("B") != pytest.approx(before, abs=1.0)
+        one.mode("edit")
+        first = one.tables
+        one.page.focus('[data-kind="point"][data-name="C"]')
+        one.gesture(lambda: one.page.keyboard.press("ArrowUp"))
+        assert one.tables["links"]["DC"]["length"] != first["links"]["DC"]["length"]
+        assert one.tables["frame"] == first["frame"]
+        assert one.messages == []
+
+
 def test_undo_brings_the_same_bytes_back(running: Any, server: Served) -> None:
     """A hundred changes, undone and done again, letter for letter."""
     with bench(running, server.address) as one:
@@ -566,6 +683,24 @@ def test_tolerances_are_a_panel_with_bars_and_bands(running: Any, server: Served
         assert "kept in the worst case" in said
         labels = one.page.locator("#panel figure figcaption").all_inner_texts()
         assert labels == ["Contributions of the numbers", "Deviations within the limits", "Drawn mechanisms"]
+        assert one.messages == []
+
+
+def test_modes_swing_in_their_panel(running: Any, server: Served) -> None:
+    """Each mode is a drawing whose lines move while one looks, and a picture that stays."""
+    with bench(running, server.address, wide=1600) as one:
+        one.template("five-bar-pendulum")
+        one.motion()
+        one.page.locator('[role="tab"]', has_text="Natural oscillations").click()
+        one.until(lambda: one.page.locator("#panel .swing svg").count() == 2)
+        said = one.page.inner_text("#panel")
+        assert "Mode 1: 0.789134 Hz, without damping" in said
+        line = one.page.locator("#panel .swing path").first
+        before = line.get_attribute("d")
+        one.until(lambda: line.get_attribute("d") != before)
+        # a link of two points is a line between them, in the frame of the picture
+        assert before is not None and before.startswith("M") and before.count("L") == 1
+        one.page.locator('[role="tab"]', has_text="Equilibria").wait_for()
         assert one.messages == []
 
 

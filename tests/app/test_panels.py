@@ -12,6 +12,8 @@ from centrode.model.examples import example_text
 EXAMPLES = {
     "region": "five-bar-two-drives",
     "simulate": "five-bar-pendulum",
+    "equilibrium": "six-bar-press-run-up",
+    "modes": "five-bar-pendulum",
     "cam-profile": "walking-wheel-four-legs",
     "roller-path": "cam-from-curvature",
     "path-routes": "cam-from-curvature",

@@ -78,7 +78,6 @@ def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
         (("export", "crank-rocker", "--c", "--vary", "links.XY.length"), "XY"),
         (("export", "crank-rocker", "--matlab", "--out", "my crank.m"), "my_crank.m"),
         (("export", "hookes-joint"), "planar linkages"),
-        (("export", "rack-and-pinion"), "no wheels that roll"),
         (("export", "cam-from-curvature"), "cam"),
         (("export", "nothing"), "no such file"),
     ):

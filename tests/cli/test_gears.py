@@ -42,7 +42,7 @@ def test_tables_drawings_and_outlines(centrode: Centrode, folder: Path) -> None:
     assert done.code == 0, done
     pictures = {
         f"{name}.{kind}"
-        for name in ("mesh", "generation", "sliding", "blocking-contour")
+        for name in ("mesh", "generation", "sliding", "contact-ratio", "blocking-contour")
         for kind in ("png", "svg")
     }
     outlines = {f"{name}.{kind}" for name in ("pinion", "wheel") for kind in ("svg", "dxf")}
@@ -69,11 +69,24 @@ def test_every_pair_is_said_in_every_language(centrode: Centrode, name: str, lan
         assert "pinion" not in done.out
 
 
-@pytest.mark.parametrize("command", ["run", "report", "cam", "describe"])
+@pytest.mark.parametrize("command", ["run", "trains", "cam", "describe"])
 def test_other_commands_say_which_one_computes_a_pair(centrode: Centrode, command: str) -> None:
     done = centrode(command, "shifted-gear-pair")
     assert done.code == 2
     assert "centrode gears" in done.err
+
+
+def test_a_pair_as_a_document(centrode: Centrode, folder: Path) -> None:
+    done = centrode("report", "rack-gear-pair", "--out", "pair.html", "--chapters", "gear-contact")
+    assert done.code == 0, done
+    assert "Contact and sliding" in (folder / "pair.html").read_text(encoding="utf-8")
+    assert "instants are those of mechanisms" in centrode("report", "rack-gear-pair", "--at", "1 rad").err
+
+
+def test_an_animation_needs_a_folder(centrode: Centrode) -> None:
+    done = centrode("gears", "rack-gear-pair", "--animate")
+    assert done.code == 2
+    assert "no output folder is given" in done.err
 
 
 def test_a_linkage_is_no_pair(centrode: Centrode) -> None:

@@ -9,6 +9,15 @@ from pathlib import Path
 
 import pytest
 
+OWN_PROBE = """
+import json, sys
+from centrode.cli.main import main
+code = main()
+sys.stdout.flush()
+there = sorted(name for name, module in sys.modules.items() if module is not None)
+print(json.dumps([code, there]), file=sys.__stderr__)
+"""
+"""As a command of its own process, in which libraries are held back."""
 PROBE = """
 import json, sys
 from centrode.cli.main import main
@@ -21,13 +30,18 @@ SYMBOLS = {"sympy", "mpmath"}
 LABELS = {"xarray", "pandas", "scipy"}
 
 
-def imported(*arguments: str, code: int = 0) -> set[str]:
-    """Packages that a command imports."""
-    probe = [sys.executable, "-c", PROBE, *arguments]
-    done = subprocess.run(probe, capture_output=True, encoding="utf-8", check=True)
+def modules_of(*arguments: str, code: int = 0, probe: str = PROBE) -> list[str]:
+    """Modules that a command imports."""
+    command = [sys.executable, "-c", probe, *arguments]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
     ended, modules = json.loads(done.stderr.splitlines()[-1])
     assert ended == code
-    return {module.split(".")[0] for module in modules}
+    return list(modules)
+
+
+def imported(*arguments: str, code: int = 0) -> set[str]:
+    """Packages that a command imports."""
+    return {module.split(".")[0] for module in modules_of(*arguments, code=code)}
 
 
 def test_a_check_needs_arrays_and_no_more(folder: Path, four_bar: str) -> None:
@@ -57,3 +71,24 @@ def test_a_run_without_figures_draws_nothing() -> None:
 )
 def test_a_missing_mechanism_is_told_without_arrays(arguments: list[str]) -> None:
     assert not imported(*arguments, code=2) & (DRAWING | SYMBOLS | LABELS | {"pint"})
+
+
+def test_an_animation_of_a_linkage_loads_neither_cams_nor_forces() -> None:
+    modules = modules_of("animate", "crank-rocker", "--frames", "2", "--out", "a.gif")
+    rooms = {".".join(module.split(".")[:2]) for module in modules}
+    assert "centrode.kinematics" in rooms
+    assert not rooms & {"centrode.cams", "centrode.dynamics", "centrode.tolerances"}
+
+
+def test_commands_hold_back_what_labelled_arrays_would_import() -> None:
+    """Angles of transmission are a dataset at whose making xarray looks for pint, and for dask."""
+    modules = modules_of("angles", "six-bar-press", "--samples", "13", probe=OWN_PROBE)
+    packages = {module.split(".")[0] for module in modules}
+    assert "xarray" in packages
+    assert not packages & {"pint", "dask"}
+
+
+def test_rare_units_are_let_in_where_they_are_held_back(folder: Path, four_bar: str) -> None:
+    (folder / "press.toml").write_text(four_bar.replace("length = 1\n", 'length = "1 yard"\n'))
+    modules = modules_of("check", "press.toml", probe=OWN_PROBE)
+    assert "pint" in {module.split(".")[0] for module in modules}

@@ -63,7 +63,7 @@ def test_a_ratio_that_no_train_has_ends_with_code_three(centrode: Centrode, fold
     assert "the nearest is" in done.err
 
 
-@pytest.mark.parametrize("command", ["run", "report", "cam", "gears", "describe"])
+@pytest.mark.parametrize("command", ["run", "cam", "gears", "describe"])
 def test_other_commands_say_which_one_finds_trains(centrode: Centrode, command: str) -> None:
     done = centrode(command, "single-planet-train")
     assert done.code == 2

@@ -56,6 +56,40 @@ def test_an_external_pair_presses_its_axes_apart(moment: float) -> None:
     assert np.allclose(frame[:, 0], radial, rtol=1e-6)
 
 
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_friction_in_a_hinge_feels_the_radial_force(moment: float) -> None:
+    """The pin bears both parts of the tooth force: F_t / cos(alpha_w), by which the bearing rubs."""
+    rough = """
+[[loads]]
+kind = "friction"
+point = "C"
+coefficient = 0.1
+radius = "5 mm"
+"""
+    text = SHAFTS.format(gear=EXTERNAL, distance=DISTANCE, moment=moment) + rough
+    found = ct.reactions(ct.parse_mechanism(text), samples=3)
+    pair = ct.gear_pair("shifted-gear-pair").geometry
+    radius, angle = pair.wheels[1].working_pitch / 2, pair.working_angle
+    # The wheel turns with -30 rpm and friction acts against that: it adds to a positive load.
+    arm = 0.1 * 0.005 / math.cos(angle)
+    tangential = abs(moment) / (radius - math.copysign(arm, moment))
+    pin = found.joint_force.sel(side="C/CB").to_numpy()
+    assert np.allclose(np.hypot(*pin.T), tangential / math.cos(angle), rtol=1e-6)
+
+
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_polygons_have_the_whole_force_between_teeth(moment: float) -> None:
+    """The graphic way gives the pins of both wheels as the equations do, the radial part included."""
+    mechanism = _shafts(moment=moment)
+    found, exact = ct.force_polygons(mechanism, 0.3), ct.reactions(mechanism, at=[0.3])
+    forces = {name: np.array([force.real, force.imag]) for name, force in found.reactions.items()}
+    sizes = sorted(float(np.hypot(*force)) for force in forces.values())
+    expected = {float(np.hypot(*exact.joint_force.sel(side=side).to_numpy()[0])) for side in ("O/OA", "C/CB")}
+    for size in expected:
+        assert min(abs(size - one) for one in sizes) < 1e-9 * size
+    assert not any("radial component" in repr(step) for step in found.steps)
+
+
 def test_a_ring_presses_its_pinion_towards_its_centre() -> None:
     pair = ct.gear_pair("internal-gear-pair").geometry
     distance = (

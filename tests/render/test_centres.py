@@ -201,3 +201,6 @@ def test_dark_pictures_are_light_on_dark() -> None:
     for text in figure.findobj(lambda one: hasattr(one, "get_fontsize") and one.get_text()):
         red, green, blue = (int(to_hex(text.get_color())[k : k + 2], 16) for k in (1, 3, 5))
         assert max(red, green, blue) > 140, text.get_text()
+        for effect in text.get_path_effects():  # the edge of letters is of the ground
+            edge = to_hex(effect._gc["foreground"])
+            assert max(int(edge[k : k + 2], 16) for k in (1, 3, 5)) < 40, text.get_text()

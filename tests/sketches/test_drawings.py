@@ -153,6 +153,7 @@ def test_dxf_with_blocks_units_and_arcs(tmp_path: Path) -> None:
         ('<path d="M0 0L30-40L120-90L140 0M30-40L140-60"/>', "rigidly"),
         (BARS + '<path d="M0 0L140 0"/>', "marked as fixed"),
         ('<g transform="turn(3)"/>', "transform"),
+        ('<g transform="rotate(1e400)"/>', "transform"),
         ('<line x1="3em"/>', "x1"),
         (BARS.replace("140", "1e15"), "too large"),
         ('<rect x="115" y="-93" width="10" height="6"/><path d="M0 0L30-40L120-90"/>', "has no guide"),

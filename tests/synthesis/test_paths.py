@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tools.campaigns.synthesis.coupler_continuation import walk
 
 import centrode as ct
 from centrode.synthesis import four_bars, path_synthesis, start_candidates
 from centrode.synthesis.cognates import cognates
 from centrode.synthesis.requests import SYNTHESES
-from coupler_continuation import walk
 
 PATHS = Path(__file__).parent.parent / "reference" / "paths"
 

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from tools.campaigns.synthesis.burmester_elimination import real_dyads
+from tools.campaigns.synthesis.coupler_continuation import walk
 
 import centrode as ct
-from burmester_elimination import real_dyads
 from centrode.synthesis import burmester, four_bars
 from centrode.synthesis.burmester import Poses
-from coupler_continuation import walk
 
 POSES = [[0, 0, 0.0], [1, 0.6, 0.3], [2, 1, 0.7], [3, 0.9, 1.2], [3.5, 0.4, 1.6]]
 

@@ -200,7 +200,8 @@ def test_true_extremes_on_the_sphere_by_brute_force() -> None:
             longitude, latitude = mechanism.links[joint.body].coordinates[joint.point]
             # holes of arcs lie on the equator of their link
             assert latitude == 0.0
-            x, y, z = np.cos(joint.play), *(np.sin(joint.play) * np.array([np.cos(angle), np.sin(angle)]))
+            x = np.cos(joint.play)
+            y, z = np.sin(joint.play) * np.cos(angle), np.sin(joint.play) * np.sin(angle)
             values += [longitude + float(np.arctan2(y, x)), float(np.arcsin(z))]
         deviations.append(float(np.ravel(moving.outputs(values))[0]) - nominal)
     assert found.lower <= min(deviations)

@@ -23,6 +23,8 @@ from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
 from tools.campaigns.source_files import cases as source_files
 from tools.campaigns.spheres import cases as spheres
+from tools.campaigns.synthesis import paths as synthesised_paths
+from tools.campaigns.synthesis import poses as five_poses
 
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
@@ -44,6 +46,8 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,
+        synthesised_paths.CAMPAIGN,
+        five_poses.CAMPAIGN,
         imports.CAMPAIGN,
     )
 }

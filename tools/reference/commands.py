@@ -26,11 +26,11 @@ PAGES: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
         ),
         "commands-forces": (
             "Commands of forces and motion under load",
-            ("reduce", "reactions", "polygons", "flywheel", "simulate", "balance"),
+            ("reduce", "reactions", "polygons", "flywheel", "simulate", "equilibrium", "modes", "balance"),
         ),
         "commands-cams-and-many": (
             "Commands of cams, synthesis and many mechanisms",
-            ("cam", "synthesise", "variants", "sweep"),
+            ("cam", "synthesise", "improve", "variants", "sweep"),
         ),
     }
 )  # fmt: skip

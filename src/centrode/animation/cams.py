@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from centrode.animation.frames import Loop, frame_ways
-from centrode.animation.layers import Array, Layer, follower_captions, turned_caption
+from centrode.animation.layers import Array, Layer, decimals_for, plain_number, turned_caption
 from centrode.animation.stage import Stage
 from centrode.animation.video_files import (
     FRAMES,
@@ -29,6 +29,7 @@ from centrode.animation.video_files import (
     write_stage,
 )
 from centrode.cams.followers.base_circle import follower_cam
+from centrode.cams.followers.geometry import Oscillating
 from centrode.cams.profiles import ProfileBody, cam_body
 from centrode.cams.results import WalkingWheelResults, walking_wheel
 from centrode.cams.roller_path import frames as frames_along
@@ -38,6 +39,7 @@ from centrode.locale import _
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.settings import shown_as
+from centrode.quantities import QUANTITIES, spelled_unit, with_unit
 from centrode.render.drawing import signs
 from centrode.render.drawing.cams import CAM, CHAIN, ROLLER, FollowerDrawing
 from centrode.render.drawing.style import GROUND, INK, MUTED
@@ -188,6 +190,22 @@ class TurningCamLayer(Layer):
 
 
 # A cam that turns below its follower, as a layer.
+
+
+def follower_captions(body: FollowerCam, angles: Array, display: Display | None) -> list[str]:
+    """The angle of the cam and the lift of its follower, frame by frame, with as many decimals in all of them."""
+    factor, unit = shown_as("rad", display)
+    lift_unit = "rad" if isinstance(body.guide, Oscillating) else "m"
+    lift_factor, lift_shown = shown_as(lift_unit, display)
+    lifts = lift_factor * body.motion.lift(np.mod(angles, math.tau))[0]
+    decimals = decimals_for(lifts, lift_shown)
+    turned, lifted = QUANTITIES["cam_angle"].symbol, QUANTITIES["lift"].symbol
+    label, lift_label = spelled_unit(unit), spelled_unit(lift_shown)
+    return [
+        f"{turned} = {with_unit(plain_number(factor * angle, 1 if unit == 'deg' else 3), label)},  "
+        f"{lifted} = {with_unit(plain_number(lift, decimals), lift_label)}"
+        for angle, lift in zip(angles.tolist(), lifts.tolist(), strict=True)
+    ]
 
 
 def follower_stage(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -11,19 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
-from centrode.dynamics.kinetostatics.reactions import reactions
-from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.simulation.simulate import simulate
-from centrode.dynamics.state import State, length_unit
-from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.path import INSIDE, grid_at
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
-from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import MotionParameter
 
 # What an animation runs over: the part of a motion that is reached, and whether it runs round or there and
@@ -256,6 +251,10 @@ COURSE = 721
 """Samples of a simulation, from which paths are drawn."""
 
 
+# what computes simulations is not loaded where drives give the motion
+_simulation = functools.partial(importlib.import_module, "centrode.dynamics.simulation.simulate")
+
+
 def course_of_simulation(mechanism: Mechanism) -> Course:
     """The motion that the simulation of a description computes: it goes by once, and then begins anew.
 
@@ -269,7 +268,7 @@ def course_of_simulation(mechanism: Mechanism) -> Course:
         repair = _('give driving = "20 - 2*v" and duration')
         raise InputError("[simulation]", _("it is missing"), repair)
     even = settings.model_copy(update={"samples": COURSE, "at": ()})
-    found = simulate(mechanism, even, motion=True)
+    found = _simulation().simulate(mechanism, even, motion=True)
     whole = usable(found)
     if whole.sum() < 2:
         raise InputError("", _("only one position is reached: nothing moves"), _("give a longer time"))
@@ -282,7 +281,7 @@ def film_of_simulation(course: Course, frames: int) -> Film:
     places = np.linspace(course.places[0], course.places[-1], frames)
     assert course.mechanism.simulation is not None
     settings = course.mechanism.simulation.model_copy(update={"at": ()})
-    found = simulate(course.mechanism, settings, at=places, motion=True)
+    found = _simulation().simulate(course.mechanism, settings, at=places, motion=True)
     numbers = np.arange(found.sizes["sample"])
     return Film(course, found, numbers, found["time"].values)
 
@@ -302,67 +301,3 @@ def frame_ways(loop: Loop, frames: int) -> Array:
     if loop == "round":
         return numbers / frames
     return np.minimum(2 * numbers, 2 * (frames - numbers)) / frames
-
-
-# Forces on the frames of an animation: of the pins on the links, and of the loads, with the places where they
-# act.
-
-
-@dataclass(frozen=True)
-class LoadForce:
-    """One force of a load.
-
-    Attributes
-    ----------
-    load : str
-        What results call the load.
-    force : (sample, axis) [N]
-    place : (sample, axis)
-        Where it acts [m]; on the sphere as a unit vector.
-    """
-
-    load: str
-    force: Array
-    place: Array
-
-
-def joint_forces(mechanism: Mechanism, places: Array) -> xr.Dataset:
-    """`reactions` at given places, without those on the frame: each link with the forces of its own pins."""
-    found = reactions(mechanism, at=places)
-    return found.isel(side=np.flatnonzero(found["side_link"].values != FRAME))
-
-
-def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
-    """Forces of all loads and weights at given places, as `reactions` takes them; moments are not among them."""
-    prepared = ready(mechanism)
-    solved = solve(prepared, grid_at(prepared.kinematics.path, places))
-    burden = MassesAndLoads.for_reactions(mechanism)
-    state = State.of(solved, input_motion_of(solved, burden).moving)
-    found = []
-    for load in burden.loads:
-        with np.errstate(all="ignore"):
-            strengths = load.strengths(state, state.exists)
-            pulls = [
-                pull.times(strength)
-                for effort, strength in zip(load.efforts, strengths, strict=True)
-                for pull in effort.pulls(state)
-            ]
-        found += _join_pulls(load.label, pulls, len(places), length_unit(mechanism))
-    return found
-
-
-def _join_pulls(label: str, pulls: Sequence[Wrench], samples: int, unit: float) -> list[LoadForce]:
-    """Pulls of a load as forces; components on one body are one force."""
-    bodies = dict.fromkeys(pull.body for pull in pulls)
-    found = []
-    for body in bodies:
-        own = [pull for pull in pulls if pull.body == body]
-        force = np.asarray(sum(_rows(pull.force, samples) for pull in own))
-        if np.nan_to_num(force).any():
-            found.append(LoadForce(label, force, _rows(own[0].at, samples) / unit))
-    return found
-
-
-def _rows(vector: Sequence[npt.ArrayLike], samples: int) -> Array:
-    """A vector of numbers or of arrays (1, sample) as (sample, axis)."""
-    return np.stack([np.broadcast_to(np.asarray(x, dtype=float), (1, samples))[0] for x in vector], axis=-1)

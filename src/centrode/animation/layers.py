@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from centrode.cams.followers.geometry import Oscillating
 from centrode.errors import Status
 from centrode.locale import decimal_mark
 from centrode.model.settings import shown_as
@@ -23,7 +21,6 @@ from centrode.scenes.sphere import Globe, globe_of
 
 if TYPE_CHECKING:
     from centrode.animation.frames import Film
-    from centrode.cams.followers.geometry import FollowerCam
     from centrode.model.settings import Display
 
 Array = NDArray[np.float64]
@@ -149,10 +146,10 @@ def instant_captions(film: Film) -> list[str]:
     parameter = film.course.parameter
     factor, unit = shown_as(parameter.instant.unit, mechanism.display)
     symbol, values = parameter.instant.symbol, factor * parameter.instants(film.motion)
-    decimals = _decimals(values, unit)
+    decimals = decimals_for(values, unit)
     label = spelled_unit(unit)
     # plain text: mathematical text is laid out for every frame anew, at many times the cost
-    texts = [f"{symbol} = {with_unit(_plain(value, decimals), label)}" for value in values]
+    texts = [f"{symbol} = {with_unit(plain_number(value, decimals), label)}" for value in values]
     for k, status in enumerate(film.motion["status"].values.tolist()):
         if status != Status.OK:
             texts[k] += f" ({status_word(status)})"
@@ -162,34 +159,19 @@ def instant_captions(film: Film) -> list[str]:
 def turned_caption(angle: float, display: Display | None) -> str:
     """The angle that the carrier of a cam's rollers has turned by."""
     factor, unit = shown_as("rad", display)
-    turned = _plain(factor * angle, 1 if unit == "deg" else 3)
+    turned = plain_number(factor * angle, 1 if unit == "deg" else 3)
     return f"{QUANTITIES['carrier_angle'].symbol} = {with_unit(turned, spelled_unit(unit))}"
 
 
-def follower_captions(body: FollowerCam, angles: Array, display: Display | None) -> list[str]:
-    """The angle of the cam and the lift of its follower, frame by frame, with as many decimals in all of them."""
-    factor, unit = shown_as("rad", display)
-    lift_unit = "rad" if isinstance(body.guide, Oscillating) else "m"
-    lift_factor, lift_shown = shown_as(lift_unit, display)
-    lifts = lift_factor * body.motion.lift(np.mod(angles, math.tau))[0]
-    decimals = _decimals(lifts, lift_shown)
-    turned, lifted = QUANTITIES["cam_angle"].symbol, QUANTITIES["lift"].symbol
-    label, lift_label = spelled_unit(unit), spelled_unit(lift_shown)
-    return [
-        f"{turned} = {with_unit(_plain(factor * angle, 1 if unit == 'deg' else 3), label)},  "
-        f"{lifted} = {with_unit(_plain(lift, decimals), lift_label)}"
-        for angle, lift in zip(angles.tolist(), lifts.tolist(), strict=True)
-    ]
-
-
-def _decimals(values: Array, unit: str) -> int:
+def decimals_for(values: Array, unit: str) -> int:
     """Decimals that all values are written with, so that no digit jumps."""
     greatest = float(np.nanmax(np.abs(values), initial=0.0))
     decimals = max(0, DIGITS - 1 - int(np.floor(np.log10(greatest)))) if greatest > 0.0 else 0
     return min(decimals, 1) if unit == "deg" else min(decimals, 9)
 
 
-def _plain(value: float, decimals: int) -> str:
+def plain_number(value: float, decimals: int) -> str:
+    """A number with so many decimals, in the digits of the language; zero has no sign."""
     text = f"{value:.{decimals}f}"
     if float(text) == 0.0:
         text = text.lstrip("-")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -11,7 +13,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
-from centrode.animation.frames import joint_forces, load_forces
 from centrode.animation.layers import NOTHING, Array, Layer, MotionLayer, ScaleArrow
 from centrode.animation.stage import ARROW_HEAD, arrow_outlines
 from centrode.locale import _, decimal_mark, ngettext
@@ -23,6 +24,9 @@ from centrode.scenes.sphere import Globe
 
 if TYPE_CHECKING:
     from centrode.animation.frames import Film
+
+# what computes forces is not loaded where none are shown
+_forces = functools.partial(importlib.import_module, "centrode.animation.forces")
 
 LONGEST = 0.22
 """Length of the longest vector, as a part of the mechanism's extent."""
@@ -174,7 +178,7 @@ LOAD = "#7A4B00"
 
 def joint_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
     """Forces of the pins on the links, each in the colour of its link, and of guides on what slides in them."""
-    found = joint_forces(film.mechanism, film.places)
+    found = _forces().joint_forces(film.mechanism, film.places)
     colours = {name: pen.colour for name, pen in pens(film.mechanism.link_names).items()}
     values = found["joint_force"].transpose("sample", "side", "axis").values
     points = found["side_point"].values.tolist()
@@ -193,7 +197,7 @@ def joint_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
 
 def load_layer(film: Film, scene: LinkageScene | Globe) -> VectorLayer:
     """Forces of loads and weights where they act."""
-    forces = load_forces(film.mechanism, film.places)
+    forces = _forces().load_forces(film.mechanism, film.places)
     factor = scene.factor if isinstance(scene, LinkageScene) else 1.0
     shape = (len(film.places), 0, 3 if isinstance(scene, Globe) else 2)
     places = np.stack([factor * one.place for one in forces], axis=1) if forces else np.empty(shape)

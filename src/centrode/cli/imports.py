@@ -9,7 +9,6 @@ import click
 from centrode.cli import library, output
 from centrode.errors import InputError
 from centrode.locale import _, mark
-from centrode.model.units import read_quantity
 
 LINKS = ("http://", "https://")
 
@@ -51,7 +50,7 @@ def import_drawing(
             raise InputError("PMKS+", _("--scale, --join and --drive belong to drawings"), _("remove them"))
         text = library.mechanism_text(library.from_pmks(drawing))
     else:
-        gap = None if join is None else read_quantity(join, "length", "--join")
+        gap = None if join is None else library.read_quantity(join, "length", "--join")
         read = library.import_sketch(drawing, scale=scale, join=gap, drive=drive)
         text, guesses, omitted = read.text, read.guesses, read.omitted
     if out is None:

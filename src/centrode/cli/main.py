@@ -13,7 +13,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -122,8 +122,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(errors="replace")
     choose_language_of_process(wished_language(arguments))
     try:
-        # xarray imports dask at its first array, which takes a short command a fifth of its time; workers admit it
-        with _termination_as_interruption(), _rare_collection(), held_back("dask") if ours else nullcontext():
+        # xarray imports dask and pint at its first array, which takes a short command a fifth of its time; workers
+        # admit the one, units of a text the other
+        with _termination_as_interruption(), _rare_collection(), _only_what_is_needed(ours):
             result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()
@@ -151,6 +152,16 @@ def _termination_as_interruption() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+@contextmanager
+def _only_what_is_needed(ours: bool) -> Iterator[None]:
+    """Hold back what xarray imports wherever it is installed; nothing in a process that is not ours."""
+    if not ours:
+        yield
+        return
+    with held_back("dask"), held_back("pint"):
+        yield
 
 
 @contextmanager

@@ -57,6 +57,21 @@ def ranges(texts: Iterable[str], where: str, sample: str = "EC=-30 deg:90 deg") 
     return found
 
 
+def read_bounds(
+    _mechanism: Mechanism, texts: Iterable[str], where: str
+) -> dict[str, tuple[str | None, str | None]]:
+    """Name -> least and greatest value of texts NAME=FIRST:LAST, of which one may be left out (None)."""
+    sample = "stroke(slide_H)=1.5 m:"
+    found: dict[str, tuple[str | None, str | None]] = {}
+    for name, value in pairs(texts, where, sample).items():
+        first, sign, last = (part.strip() for part in value.partition(":"))
+        if not sign or not (first or last):
+            what = _("expected NAME=FIRST:LAST, got {text}").format(text=f'"{name}={value}"')
+            raise InputError(where, what, _("write {sample}").format(sample=f'"{sample}"'))
+        found[name] = (first or None, last or None)
+    return found
+
+
 SCALE = "length=0.02"
 """A scale as it is written."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -67,6 +67,18 @@ class Tree:
         """Bodies that hang on a body, in the order in which they were reached."""
         return [name for name, (_pair, parent) in self.joints.items() if parent == body]
 
+    def slide(self, body: str, direction: Place) -> dict[str, float] | None:
+        """The way of a body along a direction, as joints and their factors; None where a joint above it turns."""
+        found: dict[str, float] = {}
+        while body in self.joints:
+            pair, parent = self.joints[body]
+            if pair.direction is None:
+                return None
+            sign = 1.0 if pair.second == body else -1.0
+            found[pair.name] = sign * (pair.direction[0] * direction[0] + pair.direction[1] * direction[1])
+            body = parent
+        return found
+
     def turn(self, body: str) -> dict[str, float]:
         """The angle turned by a body since the beginning, as joints and their factors."""
         found: dict[str, float] = {}
@@ -87,6 +99,7 @@ class Contact:
     wheel, on, centre : the wheel, the body that it rolls on, the point that is its centre
     pair : by which the body hangs on `on`
     own : the body is not a link of the description
+    ways : joints, and how fast their coordinates move the centre along the line against `on`, where they all slide
     share : turn of the wheel for a way of the body [rad/m], or for its turn, both against `on`
     """
 
@@ -96,6 +109,7 @@ class Contact:
     pair: Pair
     share: float
     own: bool = True
+    ways: Mapping[str, float] | None = None
 
 
 def tree_of(
@@ -103,12 +117,14 @@ def tree_of(
     places: Mapping[str, Place],
     directions: Mapping[str, Place],
     contacts: Sequence[Contact] = (),
+    light: Collection[str] = (),
 ) -> Tree:
     """The tree; `places` of the points and `directions` of the guides are those of the initial position [m].
 
     What slides on a body is reached from it at once: loops then close in hinges. A loop of prismatic pairs alone closes
     in a carriage: a body that slides like the last of them, and is pinned where that one is, as none of them turns
-    against another.
+    against another. Loops do not close at bodies that are `light` where it can be helped: constraints are as soft as
+    the lightest body that they join.
     """
     pairs = _pairs(mechanism, places, directions, contacts)
     tree, waiting, known = Tree(), deque([FRAME]), {FRAME}
@@ -122,7 +138,7 @@ def tree_of(
                 used.append(pair)
                 known.add(other)
                 waiting.append(other)
-                reach(other, sliding)
+                reach(other, pairs if other in light else sliding)
 
     sliding = [pair for pair in pairs if pair.direction is not None]
     reach(FRAME, sliding)
@@ -284,7 +300,13 @@ class Pose:
     """
 
     def __init__(
-        self, mechanism: Mechanism, motion: xarray.Dataset, nominal: float = NOMINAL, *, rolls: bool = False
+        self,
+        mechanism: Mechanism,
+        motion: xarray.Dataset,
+        nominal: float = NOMINAL,
+        *,
+        rolls: bool = False,
+        free: bool = False,
     ) -> None:
         self.mechanism = mechanism
         first = motion.isel(sample=0)
@@ -298,16 +320,17 @@ class Pose:
         self.spins, self.slides = speeds_of(mechanism, first)
         spread = [max(values) - min(values) for values in zip(*self.places.values(), strict=True)]
         self.size = max(spread)
+        light = [slider_name(guide.id) for guide in mechanism.guides] if free else []
+        self.tree: Tree = tree_of(mechanism, self.places, directions, light=light)
         self.contacts = self._contacts() if rolls else []
-        for contact in [one for one in self.contacts if one.own]:
-            turn = self.spins[contact.wheel] - self.spins[contact.on]
-            body = contact.pair.second
-            if contact.pair.direction is None:
-                self.spins[body] = self.spins[contact.on] + turn / contact.share
-            else:
-                self.spins[body] = self.spins[contact.on]
-                self.slides[contact.pair.name] = turn / contact.share
-        self.tree: Tree = tree_of(mechanism, self.places, directions, self.contacts)
+        if any(one.own for one in self.contacts):
+            # with bodies of their own the tree is another one, and what slid may turn
+            self.contacts = self._contacts(by_slides=False)
+            own = [one for one in self.contacts if one.own]
+            for contact in own:
+                self._set_rates(contact)
+            light += [contact.pair.second for contact in own]
+            self.tree = tree_of(mechanism, self.places, directions, own, light)
         self.masses: dict[str, Mass] = {mass.link: mass for mass in masses_of(mechanism)}
         self.pace = max(pace_of(drive, self.size) for drive in mechanism.drives) or 1.0
         self.step = min(LONGEST_STEP, 2 * math.pi / self.pace / STEPS)
@@ -344,7 +367,17 @@ class Pose:
     def _direction(self, guide: Guide) -> Place:
         return turn_vector(guide.unit, self.angles[guide.on])
 
-    def _contacts(self) -> list[Contact]:
+    def _set_rates(self, contact: Contact) -> None:
+        """Initial speeds of the body that keeps a wheel at its track."""
+        turn = self.spins[contact.wheel] - self.spins[contact.on]
+        body = contact.pair.second
+        if contact.pair.direction is None:
+            self.spins[body] = self.spins[contact.on] + turn / contact.share
+        else:
+            self.spins[body] = self.spins[contact.on]
+            self.slides[contact.pair.name] = turn / contact.share
+
+    def _contacts(self, *, by_slides: bool = True) -> list[Contact]:
         """Rolling wheels: on a line their centre slides, on a circle it turns about the circle's centre."""
         gearing = ready(self.mechanism).structure.dimensions.gearing
         found = []
@@ -355,6 +388,9 @@ class Pose:
                 direction = turn_vector(_numbers(track.direction), self.angles[wheel.on])
                 pair = Pair(name, wheel.on, body, centre, direction)
                 share = -1.0 / float(gearing.radius[wheel.id])
+                if by_slides and (ways := self._ways(wheel, direction)) is not None:
+                    found.append(Contact(wheel.link, wheel.on, wheel.centre, pair, share, False, ways))
+                    continue
             else:
                 place = self._place_on(wheel.on, _numbers(track.centre))
                 arm = self._arm(wheel, place)
@@ -363,6 +399,15 @@ class Pose:
             own = pair.second == body
             found.append(Contact(wheel.link, wheel.on, wheel.centre, pair, share, own))
         return found
+
+    def _ways(self, wheel: Rolling, direction: Place) -> dict[str, float] | None:
+        """How slides move a wheel's centre along a line against its track; None where joints turn either."""
+        hinge, parent = self.tree.joints[wheel.link]
+        centre, track = (self.tree.slide(body, direction) for body in (parent, wheel.on))
+        if hinge.point != wheel.centre or centre is None or track is None:
+            return None
+        names = {**centre, **track}
+        return {name: centre.get(name, 0.0) - track.get(name, 0.0) for name in names}
 
     def _arm(self, wheel: Rolling, place: Place) -> str | None:
         """The link that leads a wheel's centre about that of its circle, if there is one."""

@@ -90,7 +90,7 @@ def _plain(text: str) -> str:
     return kept.replace("*/", "* /").replace("??", "? ?").replace("<", "‹")
 
 
-def _quoted(text: str) -> str:
+def _quotation(text: str) -> str:
     """Text between double quotes, as C and JavaScript read it."""
     plain = "".join(c if c.isprintable() else " " for c in text)
     return json.dumps(plain, ensure_ascii=False).replace("?", "\\?").replace("<", "\\x3c")
@@ -115,8 +115,8 @@ def _c(program: MotionProgram, language: Language, body: Sequence[str], heads: S
     name, dimensions = program.name, len(program.paths)
     number = language.notation.number
     values = ", ".join(number(x)[0] for x in program.values) or "0.0"
-    results = ",\n    ".join(_quoted(result.name) for result in program.results)
-    paths = ", ".join(_quoted(path) for path in program.paths) or '""'
+    results = ",\n    ".join(_quotation(result.name) for result in program.results)
+    paths = ", ".join(_quotation(path) for path in program.paths) or '""'
     record = [f"double {array}[{size}];" for array, size in _arrays(program).items()]
     record += [f"double {scalar};" for scalar in SCALARS] + [f"int {scalar};" for scalar in WHOLE]
     fill = _defaults(program, language)
@@ -134,7 +134,7 @@ def _c(program: MotionProgram, language: Language, body: Sequence[str], heads: S
         f"const double {name}_dimensions[] = {{{values}}};",
         f"const char *const {name}_dimension_names[] = {{{paths}}};",
         f"const char *const {name}_results[] = {{\n    {results}\n}};",
-        f"const char *const {name}_statuses[] = {{{', '.join(_quoted(word) for word in STATUSES)}}};",
+        f"const char *const {name}_statuses[] = {{{', '.join(_quotation(word) for word in STATUSES)}}};",
         "",
         *language.helpers.splitlines(),
         "",
@@ -255,10 +255,10 @@ def _javascript(
         "}",
         "",
         "return {",
-        f"    names: [{', '.join(_quoted(path) for path in program.paths)}],",
+        f"    names: [{', '.join(_quotation(path) for path in program.paths)}],",
         f"    values: [{', '.join(number(x)[0] for x in program.values)}],",
-        f"    results: [{', '.join(_quoted(result.name) for result in program.results)}],",
-        f"    statuses: [{', '.join(_quoted(word) for word in STATUSES)}],",
+        f"    results: [{', '.join(_quotation(result.name) for result in program.results)}],",
+        f"    statuses: [{', '.join(_quotation(word) for word in STATUSES)}],",
         "    prepare,",
         f"    at: (m, drive, speed = {number(program.speed)[0]}, acceleration = 0.0) =>",
         "        motion_at(m, drive, speed, acceleration),",

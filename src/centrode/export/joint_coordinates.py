@@ -110,13 +110,13 @@ def mimics_of(pose: Pose, coordinates: Mapping[str, Array]) -> dict[str, Mimic]:
     for joint, values in coordinates.items():
         if joint in masters or not masters:
             continue
-        mimic = _fitted(masters, coordinates, values, pose.size if joint in sliding else 1.0)
+        mimic = _fit_line(masters, coordinates, values, pose.size if joint in sliding else 1.0)
         if mimic is not None and (mimic.exact or len(pose.mechanism.drives) == 1):
             found[joint] = mimic
     return found
 
 
-def _fitted(
+def _fit_line(
     masters: Sequence[str], coordinates: Mapping[str, Array], values: Array, scale: float
 ) -> Mimic | None:
     columns = [coordinates[master] for master in masters]

@@ -111,6 +111,9 @@ def add_constraints(pose: Pose, root: ET.Element) -> None:
 def _rolling(pose: Pose, contact: Contact) -> dict[str, float]:
     """What a wheel that rolls keeps constant: its turn against its track less that by its way or its arm."""
     pair, share = contact.pair, contact.share
+    if contact.ways is not None:
+        ways = {joint: -share * factor for joint, factor in contact.ways.items() if factor}
+        return pose.turns({contact.wheel: 1.0}) | ways
     if pair.direction is None:
         return pose.turns({contact.wheel: 1.0, contact.on: share - 1.0, pair.second: -share})
     return pose.turns({contact.wheel: 1.0, contact.on: -1.0}) | {pair.name: -share}
@@ -225,7 +228,7 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
         raise NotComputedYet(
             "space", _("models of MuJoCo are made of planar linkages"), _("choose a planar linkage")
         )
-    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL, rolls=True)
+    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL, rolls=True, free=free)
     if free and mechanism.simulation is not None and mechanism.simulation.duration is not None:
         pose.step = min(pose.step, mechanism.simulation.duration / FREE_STEPS)
     if min(pose.least, pose.nominal_inertia) < LIGHTEST:
@@ -267,10 +270,13 @@ def _document(pose: Pose, free: bool, pace: float) -> str:
     loads = model_loads(pose)
     if loads.tendons:
         add_tendons(loads, _tendons(root))
-    relief = {weight.link: weight.relief for weight in loads.weights if weight.relief}
+    weighed = {weight.link for weight in loads.weights if weight.force is not None}
     for element in world.iter("body"):
-        if element.get("name") in relief:
-            element.set("gravcomp", number(relief[str(element.get("name"))]))
+        inertial = element.find("inertial")
+        if element.get("name") in weighed and inertial is not None:
+            ET.SubElement(
+                element, "site", name=f"weight {element.get('name')}", pos=inertial.get("pos", "0 0 0")
+            )
     if any("refsite" in load.attributes for load in loads.actuators):
         ET.SubElement(world, "site", name=WORLD_SITE)
     kept = pose.mechanism.drives if not free else ()

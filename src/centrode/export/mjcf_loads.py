@@ -57,10 +57,10 @@ class ActuatorLoad:
 
 @dataclass(frozen=True)
 class OwnWeight:
-    """A link whose weight is not its mass times gravity: the share of gravity that is taken off it."""
+    """A link whose weight is its own: what is added to its mass times gravity, at a site in its centre of mass."""
 
     link: str
-    relief: float
+    force: ActuatorLoad | None
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,12 @@ def model_loads(pose: Pose) -> ModelLoads:
     found = {label: _model_load(pose, label, load) for label, load in labelled_loads(pose.mechanism)}
     return ModelLoads(
         tuple(x for x in found.values() if isinstance(x, TendonLoad)),
-        tuple(x for x in found.values() if isinstance(x, ActuatorLoad)),
+        tuple(
+            force
+            for x in found.values()
+            if (force := x.force if isinstance(x, OwnWeight) else x) is not None
+            and isinstance(force, ActuatorLoad)
+        ),
         tuple(x for x in found.values() if isinstance(x, OwnWeight)),
         tuple(label for label, x in found.items() if x is None),
     )
@@ -101,16 +106,16 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case HingeSpring(link=link, relative_to=base, stiffness=stiffness, free_angle=free):
             # the coordinates of joints count from the initial position
             rest = (free or 0.0) - (pose.angles[link] - pose.angles[base])
-            properties = {"stiffness": number(stiffness), "springlength": _resting(rest)}
-            return TendonLoad(name, (), _turning(pose, link, base), properties)
+            properties = {"stiffness": number(stiffness), "springlength": _resting_length(rest)}
+            return TendonLoad(name, (), _joint_turns(pose, link, base), properties)
         case HingeDamper(link=link, relative_to=base, damping=damping):
-            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(damping)})
+            return TendonLoad(name, (), _joint_turns(pose, link, base), {"damping": number(damping)})
         case HingeFriction(link=link, relative_to=base, value=None, viscous=float(viscous), quadratic=None):
-            return TendonLoad(name, (), _turning(pose, link, base), {"damping": number(viscous)})
+            return TendonLoad(name, (), _joint_turns(pose, link, base), {"damping": number(viscous)})
         case GuideFriction(guide=guide, value=None, viscous=float(viscous), quadratic=None):
             return TendonLoad(name, (), {f"guide {guide}": 1.0}, {"damping": number(viscous)})
         case Torque(link=link, relative_to=base, value=float(value), table=None):
-            return ActuatorLoad(name, {}, _turning(pose, link, base), value)
+            return ActuatorLoad(name, {}, _joint_turns(pose, link, base), value)
         case GuideForce(guide=guide, value=float(value), table=None, pressure=None):
             return ActuatorLoad(name, {}, {f"guide {guide}": 1.0}, value)
         case PointForce(point=point, vector=(float(x), float(y)), axes="frame", while_moving=None):
@@ -124,10 +129,12 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case PointWeight(point=point, value=float(value)):
             return _force(pose, name, point, turned_down(pose.mechanism, value))
         case LinkWeight(link=link, value=None) if link in pose.masses:
-            return OwnWeight(link, 0.0)
+            return OwnWeight(link, None)
         case LinkWeight(link=link, value=float(value)) if link in pose.masses:
             own = float(pose.masses[link].mass) * math.hypot(*(pose.mechanism.gravity or (0.0, 0.0)))
-            return OwnWeight(link, 1.0 - value / own) if own else None
+            gear = numbers((*turned_down(pose.mechanism, value - own), 0.0, 0.0, 0.0, 0.0))
+            attributes = {"site": f"weight {link}", "refsite": WORLD_SITE, "gear": gear}
+            return OwnWeight(link, ActuatorLoad(name, attributes, {}, 1.0)) if own else None
         case (
             HingeFriction() | GuideFriction() | BearingFriction() | SliderFriction()
             | Torque() | GuideForce() | PointForce() | LinkWeight() | PointWeight()
@@ -161,11 +168,11 @@ def _sites(pose: Pose, points: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _turning(pose: Pose, link: str, base: str) -> dict[str, float]:
+def _joint_turns(pose: Pose, link: str, base: str) -> dict[str, float]:
     return pose.turns({link: 1.0, base: -1.0})
 
 
-def _resting(length: float) -> str:
+def _resting_length(length: float) -> str:
     """A resting length as MuJoCo reads it: -1 alone has a meaning of its own there."""
     return number(length if length != -1.0 else -1.0 - 1e-15)
 

@@ -284,14 +284,14 @@ class MotionProgram:
             ),
             RecordFunction("evaluate_counted", "angle", variables, list(traced.counted.values())),
             *(
-                [RecordFunction("evaluate_reduced", "reduced", variables, self._reduced)]
+                [RecordFunction("evaluate_reduced", "reduced", variables, self._reduced_quantities)]
                 if self.is_dynamic
                 else []
             ),
         )
 
     @property
-    def _reduced(self) -> list[Node]:
+    def _reduced_quantities(self) -> list[Node]:
         """Reduced moment of inertia, its slope, and the reduced moment of the loads."""
         known = {quantity.name: quantity for quantity in self.traced.quantities}
         return [self.traced.rows[int(known[name].rows)].node for name in REDUCED]

@@ -158,3 +158,9 @@ def order_of_names(mechanism: Mechanism) -> tuple[object, ...] | None:
         return None
     links = tuple((name, tuple(link.coordinates)) for name, link in mechanism.links.items())
     return tuple(mechanism.frame.points), links
+
+
+def has_tolerances(mechanism: Mechanism) -> bool:
+    """Whether the description says which numbers deviate."""
+    settings = mechanism.tolerances
+    return settings is not None and (settings.default is not None or bool(settings.dimensions))

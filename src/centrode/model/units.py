@@ -8,18 +8,17 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-import lazy_loader
-
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.reading import value_text
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.text_formula import compile_formula
+from centrode.optional_packages import admitted
 from centrode.quantities import UNIT_SYMBOLS
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
-_pint = functools.partial(lazy_loader.load, "pint")
+_pint = functools.partial(admitted, "pint", "pint")
 
 
 @dataclass(frozen=True)

@@ -137,10 +137,30 @@ class _Writer:
             case SymbolList(symbols):
                 lines = symbol_lines([symbol_texts(one, self.spelling) for one in symbols])
                 yield {"kind": "formula", "text": "\n".join(lines)}
+            case MotionPlayer() if block.mechanism.space != "sphere":
+                yield self.swing(block)
             case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
                 return
             case _:
                 assert_never(block)
+
+    def swing(self, player: MotionPlayer) -> JSON:
+        """A motion that begins again where it ends, as places of points: a page moves its lines itself."""
+        mechanism, motion = player.mechanism, player.motion
+        names = [str(name) for name in motion["point"].values]
+        times, places = motion["time"].values, motion["position"].values
+        return {
+            "kind": "swing",
+            "title": self.spelling.text(player.title),
+            "period": _number(float(times[-1] - times[0])),
+            "points": names,
+            "fixed": [name in mechanism.frame.points for name in names],
+            "links": [
+                [names.index(point) for point in link.coordinates if point in names]
+                for link in mechanism.links.values()
+            ],
+            "places": [_numbers(sample) for sample in places],
+        }
 
     def formula(self, block: Formula) -> Iterator[JSON]:
         lines = [line for one in block.lines for line in relation_lines(map(self.spelling.leaf, one))]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -10,13 +12,15 @@ import numpy as np
 
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
-from centrode.scenes.driving_cams import driving_cams
 from centrode.scenes.places import Array, LinkageScene, Samples, box, span, turn_vectors
 
 if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Drive, Gear, Mechanism, Rolling
+
+# what computes cams is not loaded for a linkage without any
+_driving_cams = functools.partial(importlib.import_module, "centrode.scenes.driving_cams")
 
 # Where rolling wheels, their tracks and cylinders are drawn, in the units of the display.
 
@@ -171,6 +175,7 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene:
         guide.id: factor * span(dataset["slide"].sel(guide=guide.id).values) for guide in mechanism.guides
     }
     low, high = box(list(tracks.values()))
+    led_by_cam = any(drive.cam is not None for drive in mechanism.drives)
     scene = LinkageScene(
         mechanism=mechanism,
         tracks=tracks,
@@ -179,7 +184,7 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> LinkageScene:
         low=low,
         high=high,
         factor=factor,
-        cams=driving_cams(mechanism, dataset, factor),
+        cams=_driving_cams().driving_cams(mechanism, dataset, factor) if led_by_cam else (),
     )
     lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
     ends = [end for line in lines if line is not None for end in line]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from centrode.sheets.texts import NOTHING, Text
+
 if TYPE_CHECKING:
     import xarray
 
@@ -22,12 +24,14 @@ class MotionPlayer:
     ----------
     mechanism, motion : whose motion
     by_time : a slider goes through time, whatever the motion is a function of
+    title : what moves so; nothing where the place says it
     marks : names and instants [s] that the slider through time marks
     """
 
     mechanism: Mechanism
     motion: xarray.Dataset
     by_time: bool = False
+    title: Text = NOTHING
     marks: tuple[tuple[Text, float], ...] = ()
 
 

@@ -39,13 +39,13 @@ def dxf_sketch(content: bytes, where: str) -> Sketch:
     logging.getLogger("ezdxf").addHandler(logging.NullHandler())  # it tells of damage that is told here
     sketch = Sketch()
     try:
-        document = _ezdxf().read(io.StringIO(_decoded(content)))
+        document = _ezdxf().read(io.StringIO(_text_of(content)))
         unit = document.header.get("$INSUNITS", 0)
         if unit not in METRES:
             sketch.notes.append(_("the file names no unit of length: taken as millimetres"))
         sketch.unit = METRES.get(unit, 1e-3)
         for entity in _entities(document.modelspace(), sketch, 0):
-            _read(entity, sketch)
+            _read_entity(entity, sketch)
             if len(sketch.strokes) + len(sketch.rings) + len(sketch.labels) > MOST_STROKES:
                 break
     except Exception as error:
@@ -55,7 +55,7 @@ def dxf_sketch(content: bytes, where: str) -> Sketch:
     return sketch
 
 
-def _decoded(content: bytes) -> str:
+def _text_of(content: bytes) -> str:
     """The text of a file, by the code page that it names."""
     try:
         return content.decode("utf-8-sig")
@@ -79,7 +79,7 @@ def _entities(container: Any, sketch: Sketch, depth: int) -> Iterator[Any]:
             yield from _entities(entity.virtual_entities(), sketch, depth + 1)
 
 
-def _read(entity: Any, sketch: Sketch) -> None:
+def _read_entity(entity: Any, sketch: Sketch) -> None:
     kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0"))
     match kind:
         case "LINE":

@@ -15,9 +15,10 @@ import tomli_w
 from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.motion import initial_place, motion
 from centrode.locale import _
-from centrode.model.files import in_short_lines, mechanism_from
+from centrode.model.files import mechanism_from
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import Problem, read_content, read_link_name, two_points
+from centrode.model.toml import in_short_lines
 from centrode.model.units import read_quantity
 from centrode.sketches.dxf_sketches import dxf_sketch
 from centrode.sketches.interpretation import read_sketch
@@ -94,7 +95,8 @@ def import_sketch(
     """
     file = Path(path)
     content = read_content(file, FILE_SIZE)
-    if not (isinstance(scale, int | float) and not isinstance(scale, bool) and 0.0 < scale < 1e9):
+    given: object = scale  # from Python anything may come
+    if isinstance(given, bool) or not (isinstance(given, int | float) and 0.0 < given < 1e9):
         raise InputError("scale", _("a scale is a positive number"), _("give 5 for a drawing 1:5"))
     return sketch_content(content, file.name, file.suffix.lower(), float(scale), join, drive)
 
@@ -120,7 +122,7 @@ def sketch_content(
     else:
         what = _("drawings are read from .svg, .dxf and .linkage2, not from {suffix}")
         raise InputError(where, what.format(suffix=suffix or _("a file without an ending")))
-    return _Description(parts, sketch, where, scale).described(drive)
+    return _Description(parts, sketch, where, scale).describe(drive)
 
 
 def _read_both_ways(
@@ -129,13 +131,13 @@ def _read_both_ways(
     """Lines that go straight on through a hinge are two links; where that cannot be driven, one."""
     noted, unread = list(sketch.notes), dict(sketch.unread)
     try:
-        return _Description(read_sketch(sketch, where, near), sketch, where, scale).described(drive)
+        return _Description(read_sketch(sketch, where, near), sketch, where, scale).describe(drive)
     except CentrodeError:
         sketch.notes, sketch.unread = noted, unread
         try:
             parts = read_sketch(sketch, where, near, straight_on=True)
             sketch.notes.append(_("lines that go straight on through a hinge are one link"))
-            return _Description(parts, sketch, where, scale).described(drive)
+            return _Description(parts, sketch, where, scale).describe(drive)
         except CentrodeError:
             pass
         raise
@@ -150,9 +152,9 @@ class _Description:
         self.links = self._link_names()
         self.size = extent(parts.places) * self.unit
 
-    def described(self, drive: str | None) -> ImportedSketch:
+    def describe(self, drive: str | None) -> ImportedSketch:
         tables = self._tables()
-        mechanism, chosen = self._driven(tables, drive)
+        mechanism, chosen = self._choose_drives(tables, drive)
         tables["drives"] = chosen
         guesses = tuple(self.sketch.notes)
         omitted = tuple(f"{what} ({count})" for what, count in self.sketch.unread.items())
@@ -255,7 +257,9 @@ class _Description:
 
     # Drives.
 
-    def _driven(self, tables: dict[str, Any], wanted: str | None) -> tuple[Mechanism, list[dict[str, Any]]]:
+    def _choose_drives(
+        self, tables: dict[str, Any], wanted: str | None
+    ) -> tuple[Mechanism, list[dict[str, Any]]]:
         if wanted is not None:
             if wanted not in self.links[1:]:
                 what = _("the drawing has no link {name}").format(name=wanted)
@@ -269,10 +273,10 @@ class _Description:
             ends = [self.parts.names[first], self.parts.names[second]]
             marked.append({"distance": ends, "speed": speed})  # type: ignore[dict-item]
         if marked:
-            return self._assembled(tables | {"drives": marked}, tables), marked
+            return self._assemble(tables | {"drives": marked}, tables), marked
         return self._guessed_drive(tables)
 
-    def _assembled(self, tables: dict[str, Any], kept: dict[str, Any]) -> Mechanism:
+    def _assemble(self, tables: dict[str, Any], kept: dict[str, Any]) -> Mechanism:
         """The mechanism, with the side of a guided point at a cylinder where only the drawing tells it."""
         try:
             return self._mechanism(tables)
@@ -299,7 +303,9 @@ class _Description:
             )
             if len(hinged) == 1 and max(arms) > 0.0:
                 cranks.append((max(arms), name))
-        trials = [({"link": name, "speed": "1 rad/s"}, name) for _arm, name in sorted(cranks)[:CANDIDATES]]
+        trials: list[tuple[dict[str, Any], str]] = [
+            ({"link": name, "speed": "1 rad/s"}, name) for _arm, name in sorted(cranks)[:CANDIDATES]
+        ]
         if not cranks:
             led = [(index, one) for index, one in enumerate(tables.get("guides", [])) if "on" not in one]
             trials = [({"guide": one.get("name", one["point"]), "start": 0, "speed": "10 mm/s"}, one["point"])

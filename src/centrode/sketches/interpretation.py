@@ -78,7 +78,9 @@ class _Reader:
         self.strokes: dict[str, list[Stroke]] = {}
         for stroke in sketch.strokes:
             self.strokes.setdefault(role_of(stroke.layer), []).append(stroke)
-        if any(role_of(one.layer) == "gear" for one in (*sketch.strokes, *sketch.rings, *sketch.arcs)):
+        layers = {one.layer for one in sketch.strokes}
+        layers |= {one.layer for one in (*sketch.rings, *sketch.arcs)}
+        if any(role_of(layer) == "gear" for layer in layers):
             what = _("gears and wheels are not read")
             raise InputError(where, what, _("remove their layer, and write them into the description"))
         aside = len(self.strokes.pop("aside", [])) + len(self.strokes.pop("name", []))
@@ -134,7 +136,7 @@ class _Reader:
         if self.gap > 1e-6 * self.size:
             text = _("ends that were up to {gap} of the drawing's size apart were joined")
             self.sketch.notes.append(text.format(gap=f"{self.gap / self.size:.1e}"))
-        self.parts.driven = [(number, "") for number in self._driven()]
+        self.parts.driven = [(number, "") for number in self._driven_bodies()]
         return self.parts
 
     # Nodes.
@@ -560,7 +562,7 @@ class _Reader:
             self.sketch.leave_out(_("texts that name no point"), unused)
         return names
 
-    def _driven(self) -> list[int]:
+    def _driven_bodies(self) -> list[int]:
         """Links on a layer of drives, and those at whose fixed hinge an arc or an arrow of that layer is drawn."""
         found = [
             number

@@ -132,4 +132,4 @@ def extent(places: Sequence[Place]) -> float:
     """Longer side of the box around places."""
     if not places:
         return 0.0
-    return max(max(values) - min(values) for values in zip(*places, strict=True))
+    return float(max(max(values) - min(values) for values in zip(*places, strict=True)))

@@ -61,7 +61,7 @@ def svg_sketch(content: bytes, where: str) -> Sketch:
     sketch = Sketch()
     matrix = _view(root, sketch, where)
     for child in root.children:
-        _read(child, matrix, "", sketch, where)
+        _read_element(child, matrix, "", sketch, where)
     return sketch
 
 
@@ -93,7 +93,7 @@ def _length(text: str) -> tuple[float, str] | None:
     return (float(fitting[1]), fitting[2].lower()) if fitting else None
 
 
-def _read(element: Element, matrix: Matrix, layer: str, sketch: Sketch, where: str) -> None:
+def _read_element(element: Element, matrix: Matrix, layer: str, sketch: Sketch, where: str) -> None:
     name = element.name
     if name in PASSED_OVER:
         return
@@ -110,20 +110,20 @@ def _read(element: Element, matrix: Matrix, layer: str, sketch: Sketch, where: s
             sketch.leave_out(_("drawings inside the drawing"))
             return
         for child in element.children:
-            _read(child, matrix, layer, sketch, where)
+            _read_element(child, matrix, layer, sketch, where)
         return
     number = _Numbers(element, where)
     if name == "line":
         ends = [(number("x1"), number("y1")), (number("x2"), number("y2"))]
-        _add(sketch, element, [_moved(matrix, end) for end in ends], layer, closed=False)
+        _add(sketch, element, [_move(matrix, end) for end in ends], layer, closed=False)
     elif name in ("polyline", "polygon"):
         numbers = [float(x) for x in _NUMBER.findall(element.get("points"))]
-        places = [_moved(matrix, place) for place in zip(numbers[::2], numbers[1::2], strict=False)]
+        places = [_move(matrix, place) for place in zip(numbers[::2], numbers[1::2], strict=False)]
         _add(sketch, element, places, layer, closed=name == "polygon")
     elif name == "rect":
         x, y, w, h = number("x"), number("y"), number("width"), number("height")
         corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
-        _add(sketch, element, [_moved(matrix, corner) for corner in corners], layer, closed=True)
+        _add(sketch, element, [_move(matrix, corner) for corner in corners], layer, closed=True)
     elif name in ("circle", "ellipse"):
         radii = (number("r"), number("r")) if name == "circle" else (number("rx"), number("ry"))
         _add_circle(sketch, matrix, (number("cx"), number("cy")), radii, layer)
@@ -133,10 +133,10 @@ def _read(element: Element, matrix: Matrix, layer: str, sketch: Sketch, where: s
             sketch.leave_out(_("curved paths"))
             return
         for places, closed in pieces:
-            _add(sketch, element, [_moved(matrix, place) for place in places], layer, closed=closed)
+            _add(sketch, element, [_move(matrix, place) for place in places], layer, closed=closed)
     elif name == "text":
         words = " ".join("".join(_words(element)).split())
-        place = _moved(matrix, (number("x"), number("y")))
+        place = _move(matrix, (number("x"), number("y")))
         if words:
             sketch.labels.append(Label(words[:100], place, layer))
     else:
@@ -205,7 +205,7 @@ def _add_circle(
     if not (even and keeps):
         sketch.leave_out(_("ellipses"))
         return
-    sketch.rings.append(Ring(_moved(matrix, centre), abs(radii[0]) * scale, layer))
+    sketch.rings.append(Ring(_move(matrix, centre), abs(radii[0]) * scale, layer))
 
 
 def _path_pieces(text: str) -> list[tuple[list[Place], bool]] | None:
@@ -214,7 +214,8 @@ def _path_pieces(text: str) -> list[tuple[list[Place], bool]] | None:
     here = (0.0, 0.0)
     start = here
     places: list[Place] = []
-    command, numbers = "", []
+    command = ""
+    numbers: list[float] = []
     for step in _STEP.finditer(text):
         letter, number, other = step.groups()
         if other or (letter and letter not in "MmLlHhVvZz"):
@@ -266,7 +267,8 @@ def _transform(text: str, where: str) -> Matrix:
     if _TRANSFORM.sub("", text).strip(" ,\t\r\n"):
         raise InputError(where, _("a transform of the drawing cannot be read"), _("save it as plain SVG"))
     for kind, inside in _TRANSFORM.findall(text):
-        step = _step(kind, [float(x) for x in _NUMBER.findall(inside)])
+        numbers = [float(x) for x in _NUMBER.findall(inside)]
+        step = _step(kind, numbers) if all(map(math.isfinite, numbers)) else None
         if step is None:
             raise InputError(where, _("a transform of the drawing cannot be read"), _("save it as plain SVG"))
         matrix = _product(matrix, step)
@@ -304,7 +306,7 @@ def _product(outer: Matrix, inner: Matrix) -> Matrix:
     )  # fmt: skip
 
 
-def _moved(matrix: Matrix, place: Place) -> Place:
+def _move(matrix: Matrix, place: Place) -> Place:
     a, b, c, d, e, f = matrix
     x, y = place
     return a * x + c * y + e, b * x + d * y + f

@@ -64,11 +64,14 @@ def xml_tree(content: bytes, where: str) -> Element:
     def entity(*_declared: object) -> None:
         refuse(_("the file declares entities, which are not read"))
 
+    def outside(*_declared: object) -> int:
+        refuse(_("the file declares entities, which are not read"))
+
     parser.StartElementHandler = start
     parser.EndElementHandler = end
     parser.CharacterDataHandler = words
     parser.EntityDeclHandler = entity
-    parser.ExternalEntityRefHandler = entity
+    parser.ExternalEntityRefHandler = outside
     parser.buffer_text = True
     try:
         parser.Parse(content, True)

@@ -107,7 +107,15 @@ def five_pose_dyads(poses: Poses) -> Dyads:
     # in an oblique frame of the size of the poses no solution lies at a special place
     oblique = np.exp(0.7j)
     scaled = Poses((poses.places - middle) / size * oblique, poses.angles)
-    by_u, by_v, base = _matrices(scaled)
+    found = bilinear_pairs(*_matrices(scaled))
+    found.sort(key=lambda pair: (pair[1].real, pair[1].imag))
+    moving = np.array([w for w, _g in found], dtype=complex) / oblique * size + middle
+    fixed = np.array([g for _w, g in found], dtype=complex) / oblique * size + middle
+    return Dyads(moving, fixed)
+
+
+def bilinear_pairs(by_u: Array, by_v: Array, base: Array) -> list[tuple[complex, complex]]:
+    """All real (u + i v, x + i y) with (u M_u + v M_v + M_1) (x, y, 1) = 0, of four rows (4, 3) each."""
     constant, linear = np.zeros((12, 12)), np.zeros((12, 12))
     for power in range(3):
         rows = slice(4 * power, 4 * power + 4)
@@ -136,10 +144,7 @@ def five_pose_dyads(poses: Poses) -> Dyads:
         near = 1e-7 * (1 + abs(pair[0]) + abs(pair[1]))
         if not any(abs(pair[0] - w) + abs(pair[1] - g) < near for w, g in found):
             found.append(pair)
-    found.sort(key=lambda pair: (pair[1].real, pair[1].imag))
-    moving = np.array([w for w, _g in found], dtype=complex) / oblique * size + middle
-    fixed = np.array([g for _w, g in found], dtype=complex) / oblique * size + middle
-    return Dyads(moving, fixed)
+    return found
 
 
 def _newton(by_u: Array, by_v: Array, base: Array, place: Complex) -> Complex | None:

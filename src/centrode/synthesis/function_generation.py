@@ -333,26 +333,48 @@ def _descend(
     keeps: Callable[[Array, Array, Array], np.ndarray[tuple[int, ...], np.dtype[np.bool_]]],
 ) -> Array:
     sides = np.array([side])
+    return lessen_greatest(
+        variables,
+        lambda at: angle_errors(at[None, :2], at[None, 2:], sides, crank, rocker)[0],
+        lambda at: _error_slopes(at[None], sides, crank)[0],
+        lambda at: bool(keeps(at[None, :2], at[None, 2:], sides)[0]),
+    )
+
+
+def lessen_greatest(
+    variables: Array,
+    errors: Callable[[Array], Array],
+    slopes: Callable[[Array], Array],
+    keeps: Callable[[Array], bool],
+) -> Array:
+    """Variables, the first two of them angles, from which no linear program lessens the greatest error.
+
+    Parameters
+    ----------
+    errors : variables -> (n,), infinite where there are none
+    slopes : variables -> (n, variables)
+    keeps : whether variables keep what is required
+    """
     region = 0.05
-    best = float(_worst(variables[None], sides, crank, rocker)[0])
+    count = len(variables)
+    best = float(np.abs(errors(variables)).max())
     for _iteration in range(80):
-        errors = angle_errors(variables[None, :2], variables[None, 2:], sides, crank, rocker)[0]
-        slopes = _error_slopes(variables[None], sides, crank)[0]
-        one = np.ones((len(crank), 1))
-        bound = np.vstack([np.hstack([slopes, -one]), np.hstack([-slopes, -one])])
-        limits = [(-region, region)] * 2 + [(-region * x, region * x) for x in variables[2:]] + [(0.0, None)]
+        missed, by = errors(variables), slopes(variables)
+        one = np.ones((len(missed), 1))
+        bound = np.vstack([np.hstack([by, -one]), np.hstack([-by, -one])])
+        limits = [(-region, region)] * 2 + [(-region * abs(x), region * abs(x)) for x in variables[2:]]
         solved = linprog(
-            [0, 0, 0, 0, 0, 1],
+            [*[0] * count, 1],
             A_ub=bound,
-            b_ub=np.concatenate([-errors, errors]),
-            bounds=limits,
+            b_ub=np.concatenate([-missed, missed]),
+            bounds=[*limits, (0.0, None)],
             method="highs",
         )
         if not solved.success:
             break
-        proposed = variables + solved.x[:5]
-        worst = float(_worst(proposed[None], sides, crank, rocker)[0])
-        if worst < best and keeps(proposed[None, :2], proposed[None, 2:], sides)[0]:
+        proposed = variables + solved.x[:count]
+        worst = float(np.abs(errors(proposed)).max())
+        if worst < best and keeps(proposed):
             small = best - worst < 1e-10 * best
             variables, best, region = proposed, worst, min(region * 2, 0.2)
             if small:

@@ -38,16 +38,62 @@ class Targets:
 
     Attributes
     ----------
-    points : (n) of P
-    directions : (n) angles of the body [rad], or None
+    points : (n) of P, complex; on the sphere unit vectors (n, 3)
+    directions : (n) angles of the body [rad], on the sphere unit vectors (n, 3) of its x axis, or None
     crank : (n) angles of the crank [rad], or None where they are free
     arm : length that an angle of one radian counts for
     """
 
-    points: Complex
+    points: Complex | Array
     directions: Array | None = None
     crank: Array | None = None
     arm: float = 1.0
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """How linkages of a space miss targets; both functions take the targets, variables, sides and crank angles.
+
+    Attributes
+    ----------
+    residuals : (lanes, n, rows), and (lanes,) bool whether a linkage closes at all targets
+    slopes : derivatives (lanes, n, rows, 11) by the variables and (lanes, n, rows) by the crank's angle
+    """
+
+    residuals: Callable[[Targets, Array, Array, Array], tuple[Array, Booleans]]
+    slopes: Callable[[Targets, Array, Array, Array], tuple[Array, Array]]
+
+
+def _plane_residuals(
+    targets: Targets, variables: Array, side: Array, angles: Array
+) -> tuple[Array, Booleans]:
+    motion = coupler_motion(variables[:, :9], angles, side)
+    miss = motion.point - targets.points
+    rows = [miss.real, miss.imag]
+    if targets.directions is not None:
+        wanted = np.exp(1j * (targets.directions - variables[:, ATTACHMENT, None]))
+        rows.append(targets.arm * np.angle(motion.direction / wanted))
+    return np.stack(rows, axis=-1), np.all(motion.radicand > 0, axis=1)
+
+
+def _plane_slopes(targets: Targets, variables: Array, side: Array, angles: Array) -> tuple[Array, Array]:
+    linkages = variables[:, :9]
+    slopes = coupler_slopes(linkages, angles, coupler_motion(linkages, angles, side))
+    lanes, n = angles.shape
+    rows = 3 if targets.directions is not None else 2
+    by = np.zeros((lanes, n, rows, VARIABLES))
+    by[:, :, 0, :9], by[:, :, 1, :9] = slopes.point.real, slopes.point.imag
+    turn = np.zeros((lanes, n, rows))
+    turn[:, :, 0], turn[:, :, 1] = slopes.point_by_crank.real, slopes.point_by_crank.imag
+    if rows == 3:
+        by[:, :, 2, :9] = targets.arm * slopes.angle
+        by[:, :, 2, ATTACHMENT] = targets.arm
+        turn[:, :, 2] = targets.arm * slopes.angle_by_crank
+    by[..., PHASE] = turn
+    return by, turn
+
+
+PLANE = Kernel(_plane_residuals, _plane_slopes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +106,7 @@ class Problem:
     low, high : (11) bounds of the variables
     hinges : constraints, or None
     weight : of the hinges
+    kernel : of the plane or of the sphere
     """
 
     targets: Targets
@@ -68,6 +115,7 @@ class Problem:
     high: Array
     hinges: Hinges | None = None
     weight: float = 30.0
+    kernel: Kernel = PLANE
 
 
 @dataclass(eq=False)
@@ -135,33 +183,12 @@ def _angles(problem: Problem, variables: Array, crank: Array) -> Array:
 
 def _residuals(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Booleans]:
     """(lanes, n, rows) of the targets, and (lanes,) bool whether the linkage closes at all of them."""
-    motion = coupler_motion(variables[:, :9], _angles(problem, variables, crank), side)
-    targets = problem.targets
-    miss = motion.point - targets.points
-    rows = [miss.real, miss.imag]
-    if targets.directions is not None:
-        wanted = np.exp(1j * (targets.directions - variables[:, ATTACHMENT, None]))
-        rows.append(targets.arm * np.angle(motion.direction / wanted))
-    return np.stack(rows, axis=-1), np.all(motion.radicand > 0, axis=1)
+    return problem.kernel.residuals(problem.targets, variables, side, _angles(problem, variables, crank))
 
 
 def _slopes(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array]:
     """Derivatives (lanes, n, rows, 11) by the variables and (lanes, n, rows) by the crank's angle."""
-    angles = _angles(problem, variables, crank)
-    linkages = variables[:, :9]
-    slopes = coupler_slopes(linkages, angles, coupler_motion(linkages, angles, side))
-    lanes, n = angles.shape
-    rows = 3 if problem.targets.directions is not None else 2
-    by = np.zeros((lanes, n, rows, VARIABLES))
-    by[:, :, 0, :9], by[:, :, 1, :9] = slopes.point.real, slopes.point.imag
-    turn = np.zeros((lanes, n, rows))
-    turn[:, :, 0], turn[:, :, 1] = slopes.point_by_crank.real, slopes.point_by_crank.imag
-    if rows == 3:
-        by[:, :, 2, :9] = problem.targets.arm * slopes.angle
-        by[:, :, 2, ATTACHMENT] = problem.targets.arm
-        turn[:, :, 2] = problem.targets.arm * slopes.angle_by_crank
-    by[..., PHASE] = turn
-    return by, turn
+    return problem.kernel.slopes(problem.targets, variables, side, _angles(problem, variables, crank))
 
 
 def _hinges(problem: Problem, variables: Array, side: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from centrode.locale import _
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
 from centrode.synthesis.answers import Answer, SynthesisResults, four_bar_answer
-from centrode.synthesis.candidate_refinement import Progress, fit_lanes
+from centrode.synthesis.candidate_refinement import SHARP, Progress, fit_lanes
 from centrode.synthesis.four_bars import (
     COUPLER,
     CRANK,
@@ -38,6 +39,7 @@ from centrode.synthesis.least_squares import (
     Problem,
     Targets,
     is_ordered,
+    least_squares,
 )
 from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
 from centrode.synthesis.start_candidates import (
@@ -51,8 +53,11 @@ CRANK_MARGIN = 1e-4
 """Of Grashof's rule, in units of frame and crank: a crank that only just turns is none."""
 OPEN_CANDIDATES = 320
 RANDOM_STARTS = 1500
-BOX_PLACES = 24
-"""Crank angles at which the box around a mechanism is looked at."""
+BOX_PLACES, FINE_PLACES = 24, 7200
+"""Crank angles at which the box around a mechanism is looked at, in the search and of an answer."""
+BOX_MARGIN = 2e-3
+TRADES = 5
+"""Steps of a trade-off."""
 MET = 1e-6
 """A constraint holds up to this part."""
 
@@ -99,7 +104,9 @@ def path_answers(
     lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop)
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
-        raise _nothing(wanted, nearest_miss)
+        raise _nothing(wanted, nearest_miss, _broken_name(wanted.constraints, lanes, size))
+    if wanted.trade_off is not None:
+        answers = _trade(task, problem, lanes, answers, middle, size, closed, stop)
     return SynthesisResults(task, tuple(answers), points, closed, examined=examined, complete=not stop())
 
 
@@ -176,9 +183,17 @@ def _bounds(wanted: Synthesis) -> dict[int, tuple[float, float]]:
 
 def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
     """The constraints as residuals that are positive where they do not hold; None where there are none."""
-    parts: list[Hinges] = []
+    parts = [part for _name, part in named_hinges(constraints, size)]
+    if not parts:
+        return None
+    return lambda variables, side: np.concatenate([part(variables, side) for part in parts], axis=1)
+
+
+def named_hinges(constraints: Constraints, size: float) -> list[tuple[str, Hinges]]:
+    """Each constraint that is given by its key, in units of which the targets' size is one."""
+    parts: list[tuple[str, Hinges]] = []
     if constraints.crank is not None:
-        parts.append(lambda variables, side: CRANK_MARGIN - crank_margins(variables[:, :9]))
+        parts.append(("crank", lambda variables, side: CRANK_MARGIN - crank_margins(variables[:, :9])))
     if constraints.transmission is not None:
         most = float(np.cos(constraints.transmission)) * (1 - 1e-9)
 
@@ -188,7 +203,7 @@ def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
             cosine = ((b * b + c * c)[:, None] - ends**2) / (2 * b * c)[:, None]
             return np.concatenate([cosine - most, -cosine - most], axis=1) + 1e-7
 
-        parts.append(transmission)
+        parts.append(("transmission", transmission))
     if constraints.length_ratio is not None:
         ratio = float(np.log(constraints.length_ratio))
 
@@ -196,30 +211,65 @@ def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
             logs = np.log(lengths(variables[:, :9]))
             return (logs[:, :, None] - logs[:, None, :]).reshape(len(logs), 16) - ratio + 1e-7
 
-        parts.append(length_ratio)
+        parts.append(("length_ratio", length_ratio))
     if constraints.size is not None:
         width, height = (side / size for side in constraints.size)
 
         def box(variables: Array, side: Array) -> Array:
-            excess: Array = box_of(variables[:, :9], side) / np.array([width, height]) - 1.0 + 1e-6
+            # what parabolas between the places leave is smaller than the margin
+            excess: Array = box_of(variables[:, :9], side) / np.array([width, height]) - 1.0 + BOX_MARGIN
             return excess
 
-        parts.append(box)
-    if not parts:
-        return None
-    return lambda variables, side: np.concatenate([part(variables, side) for part in parts], axis=1)
+        parts.append(("size", box))
+    return parts
 
 
-def box_of(linkages: Array, side: Array) -> Array:
-    """Width and height (lanes, 2) of the box around O, D, A, B and P over a full turn, to second order in the step."""
-    turn = np.linspace(0.0, 2 * np.pi, BOX_PLACES, endpoint=False)
+def box_of(linkages: Array, side: Array, places: int = BOX_PLACES) -> Array:
+    """Width and height (lanes, 2) of the box around O, D, A, B and P over a full turn.
+
+    Between places of the crank each extreme is that of the parabola through its neighbours.
+    """
+    turn = np.linspace(0.0, 2 * np.pi, places, endpoint=False)
     motion = coupler_motion(linkages, turn, side)
     shape = linkages[:, PX, None] + 1j * linkages[:, PY, None]
     joint = motion.point - shape * motion.direction
     other = joint + linkages[:, COUPLER, None] * motion.direction
     fixed = linkages[:, [OX, DX]] + 1j * linkages[:, [OY, DY]]
-    places = np.concatenate([fixed, joint, other, motion.point], axis=1)
-    return np.column_stack([np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1)])
+    moving = np.stack([joint, other, motion.point], axis=1)
+    sides = []
+    for part, still in ((moving.real, fixed.real), (moving.imag, fixed.imag)):
+        most = np.maximum(_greatest(part).max(axis=1), still.max(axis=1))
+        least = np.minimum(-_greatest(-part).max(axis=1), still.min(axis=1))
+        sides.append(most - least)
+    return np.column_stack(sides)
+
+
+def _greatest(values: Array) -> Array:
+    """Greatest value (...) of periodic samples (..., n), with the parabola about the greatest of them."""
+    best = np.argmax(values, axis=-1)[..., None]
+    n = values.shape[-1]
+    before, here, after = (np.take_along_axis(values, (best + k) % n, axis=-1)[..., 0] for k in (-1, 0, 1))
+    bend = 2 * here - before - after
+    greatest: Array = here + (after - before) ** 2 / (8 * np.maximum(bend, 1e-300))
+    return np.where(bend > 0, greatest, here)
+
+
+def is_within(linkage: Array, side: float, size: tuple[float, ...]) -> bool:
+    """Whether the box around all positions of a linkage (9,) keeps a size [m]: between fine samples it is bounded.
+
+    Over a step h a coordinate exceeds its samples by h^2/8 of its greatest second derivative at most, which the second
+    differences of the samples give but for a hundredth.
+    """
+    turn = np.linspace(0.0, 2 * np.pi, FINE_PLACES, endpoint=False)
+    motion = coupler_motion(linkage[None], turn, np.array([side]))
+    joint = motion.point - complex(linkage[PX], linkage[PY]) * motion.direction
+    places = np.concatenate([motion.point, joint, joint + linkage[COUPLER] * motion.direction])
+    bends = np.abs(np.roll(places, 1, axis=1) + np.roll(places, -1, axis=1) - 2 * places).max()
+    fixed = np.array([complex(linkage[OX], linkage[OY]), complex(linkage[DX], linkage[DY])])
+    everything = np.append(places.ravel(), fixed)
+    width, height = np.ptp(everything.real), np.ptp(everything.imag)
+    slack = 2 * 1.01 * bends / 8
+    return bool(width + slack <= size[0] * (1 + 1e-9) and height + slack <= size[1] * (1 + 1e-9))
 
 
 def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) -> Lanes:
@@ -288,6 +338,8 @@ def _answers(
         answer = four_bar_answer(task, linkage, side, crank, sense, errors, closed, numbers, further)
         if constraints.order and not answer.defects.none:
             continue
+        if constraints.size is not None and not is_within(linkage, side, constraints.size):
+            continue
         if any(_alike(answer, other, size) for other in found):
             continue
         found.append(answer)
@@ -317,7 +369,72 @@ def _alike(answer: Answer, other: Answer, size: float) -> bool:
     return bool(distance < 2e-2 * size)
 
 
-def _nothing(wanted: Synthesis, miss: float) -> MotionError:
+def _trade(
+    task: SynthesisTask,
+    problem: Problem,
+    lanes: Lanes,
+    answers: list[Answer],
+    middle: complex,
+    size: float,
+    closed: bool,
+    stop: Callable[[], bool],
+) -> list[Answer]:
+    """Answers of which none is worse than another in both its error and its size or transmission angle.
+
+    From the best answers on, the bound is tightened step by step.
+    """
+    wanted = task.synthesis
+    everything = list(answers)
+    best = answers[0]
+    for step in range(1, TRADES + 1):
+        if stop():
+            break
+        constraints = wanted.constraints
+        if wanted.trade_off == "transmission":
+            least = best.transmission + (np.radians(60) - best.transmission) * step / TRADES
+            if not least > best.transmission:
+                break
+            constraints = constraints.model_copy(update={"transmission": float(least)})
+        else:
+            edge = max(best.size) * (1 - step / (TRADES + 2))
+            constraints = constraints.model_copy(update={"size": (edge, edge)})
+        narrowed = replace(problem, hinges=hinges_of(constraints, size), weight=SHARP)
+        moved = least_squares(replace(narrowed, weight=30.0), lanes, 200, 1e-10, stop)
+        moved = least_squares(narrowed, moved, 200, 1e-12, stop)
+        its = task.model_copy(update={"synthesis": wanted.model_copy(update={"constraints": constraints})})
+        order = np.argsort(moved.errors, kind="stable")
+        everything += _answers(its, narrowed, moved.take(order), middle, size, closed)[0][:2]
+
+    def cost(answer: Answer) -> float:
+        return -answer.transmission if wanted.trade_off == "transmission" else max(answer.size)
+
+    front = [
+        one
+        for one in everything
+        if not any(
+            other.error <= one.error
+            and cost(other) <= cost(one)
+            and (other.error, cost(other)) != (one.error, cost(one))
+            for other in everything
+        )
+    ]
+    front.sort(key=lambda one: one.error)
+    return front[: wanted.answers]
+
+
+def _broken_name(constraints: Constraints, lanes: Lanes, size: float) -> str:
+    """The constraint that the lane breaks which breaks least; empty where none is broken."""
+    if not len(lanes.side):
+        return ""
+    least = int(np.argmin(lanes.violation))
+    row, side = lanes.variables[least : least + 1], lanes.side[least : least + 1]
+    worst = [(float(part(row, side).max()), name) for name, part in named_hinges(constraints, size)]
+    broken = [one for one in worst if one[0] > MET]
+    return max(broken)[1] if broken else ""
+
+
+def _nothing(wanted: Synthesis, miss: float, broken: str) -> MotionError:
+    where = f"[synthesis.constraints] {broken}" if broken else "[synthesis]"
     what = _("no linkage keeps everything that is required")
     repair = _("loosen a constraint or a range")
     if np.isfinite(miss):
@@ -325,4 +442,4 @@ def _nothing(wanted: Synthesis, miss: float) -> MotionError:
             "without it the nearest misses the targets by {miss:.3g} m; loosen a constraint or a range"
         )
         repair = repair.format(miss=miss)
-    return MotionError("[synthesis]", what, repair)
+    return MotionError(where, what, repair)

@@ -56,7 +56,9 @@ STROKE_TOPOLOGIES = (
     "whitworth-quick-return",
     "six-bar-press",
 )
-TOPOLOGIES = tuple(dict.fromkeys((*FOUR_BARS, *STROKE_TOPOLOGIES)))
+SPHERICAL = ("spherical-four-bar", "spherical-crank-rocker")
+"""Topologies of the spherical four-bar linkage O-A-B-D."""
+TOPOLOGIES = tuple(dict.fromkeys((*FOUR_BARS, *SPHERICAL, *STROKE_TOPOLOGIES)))
 MOST_FREE = 40
 MOST_TARGETS = 2000
 MOST_POSES = 5
@@ -154,6 +156,31 @@ def _size(value: object) -> tuple[float, ...]:
     return width, height
 
 
+class Dwell(DescriptionPart):
+    """How an output rests.
+
+    Attributes
+    ----------
+    value : where it rests [SI]; None: anywhere
+    range : values of the drive [rad] between which it does
+    """
+
+    value: Annotated[float, PlainValidator(lambda value: _dwell_value(value))] | None = None
+    range: Annotated[Interval, PlainValidator(lambda value: _dwell_range(value))]
+
+
+def _dwell_value(value: object) -> float:
+    kind = "angle" if isinstance(value, str) and value.strip().endswith(("deg", "rad")) else "length"
+    return si(value, kind)
+
+
+def _dwell_range(value: object) -> Interval:
+    low, high = _interval(value, "angle")
+    if not 0 < high - low < 2 * math.pi:
+        raise Problem(_("a dwell lies between two angles less than a turn apart"))
+    return low, high
+
+
 class Synthesis(DescriptionPart):
     """What is wanted of a mechanism.
 
@@ -175,8 +202,10 @@ class Synthesis(DescriptionPart):
     hinges : given fixed hinges [m] of three poses
     free : path -> least and greatest value [SI]
     guide, stroke, time_ratio, transmission, swing : of strokes
+    dwell : of strokes of a mechanism of a file: where and between which values of the drive the output rests
     length : of the frame of a function, of the rocker of a crank-rocker, of the frame or the crank of a quick
         return [m]
+    trade_off : of paths: "size" or "transmission", against which answers trade their error
     answers : at most so many
     seed : of random starts
     """
@@ -204,12 +233,15 @@ class Synthesis(DescriptionPart):
     time_ratio: Annotated[float, PlainValidator(_ratio)] | None = None
     transmission: Annotated[float, quantity("angle", _transmission)] | None = None
     swing: Annotated[float, quantity("angle", positive)] | None = None
+    dwell: Dwell | None = None
     length: Annotated[float, quantity("length", positive)] | None = None
+    trade_off: Annotated[Literal["size", "transmission"], choice("size", "transmission")] | None = None
     answers: Annotated[int, whole_number(1, MOST_ANSWERS)] = MOST_ANSWERS
     seed: Annotated[int, whole_number(0, 2**31)] = 0
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
+        _check_keys(self)
         if self.kind == "strokes":
             _check_strokes(self)
             return self
@@ -235,12 +267,23 @@ class Synthesis(DescriptionPart):
         return self.targets if isinstance(self.targets, tuple) else ()
 
     def _read_targets(self) -> Rows:
+        sphere = {
+            "path": TableColumns(("angle", "angle", "angle"), "[longitude, latitude, angle of the drive]", 2),
+            "motion": TableColumns(
+                ("angle",) * 4, "[longitude, latitude, angle of the link from east, angle of the drive]", 3
+            ),
+        }
         columns = {
             "path": TableColumns(("length", "length", "angle"), "[x, y, angle of the drive]", 2),
             "motion": TableColumns(
                 ("length", "length", "angle", "angle"), "[x, y, angle of the link, angle of the drive]", 3
             ),
-            "function": TableColumns(("angle", "angle"), "[angle of the crank, angle of the rocker]", 2),
+            "function": TableColumns(
+                ("angle", "length" if self.of.startswith(("slide", "position")) else "angle"),
+                "[angle of the crank, angle of the rocker]",
+                2,
+            ),
+            **(sphere if self.topology in SPHERICAL else {}),
         }[self.kind]
         try:
             rows = read_rows(self.targets, columns, READING.get().folder)
@@ -267,6 +310,43 @@ def _hinges(value: object) -> tuple[tuple[float, float], ...]:
         raise Problem(_("expected two points [[x, y], [x, y]], got {value}").format(value=value_text(value)))
     first, second = (numbers(point, ("length", "length"), "[x, y]") for point in value)
     return (first[0], first[1]), (second[0], second[1])
+
+
+COMMON = ("kind", "topology", "constraints", "answers", "seed")
+KEYS: Mapping[Kind, tuple[str, ...]] = {
+    "path": ("point", "targets", "timing", "place", "closed", "free", "trade_off"),
+    "motion": ("point", "link", "targets", "timing", "place", "hinges", "free", "trade_off"),
+    "function": ("of", "targets", "formula", "x", "swings", "exact", "length", "free"),
+    "strokes": (
+        "of", "guide", "stroke", "time_ratio", "transmission", "swing", "length", "dwell", "targets", "free"
+    ),
+}  # fmt: skip
+"""Keys of [synthesis] that mean something to a kind."""
+
+
+def _check_keys(wanted: Synthesis) -> None:
+    """Refuse keys that would not be heeded."""
+    for key in sorted(wanted.model_fields_set):
+        foreign = key not in (*COMMON, *KEYS[wanted.kind])
+        # closed forms and Freudenstein's equation have no ranges
+        unused = key == "free" and wanted.topology is not None and wanted.kind in ("function", "strokes")
+        if foreign or unused:
+            what = _('"{key}" means nothing to kind = "{kind}"').format(key=key, kind=wanted.kind)
+            raise Problem(what, _("remove it"), (key,))
+    if wanted.hinges is not None and isinstance(wanted.targets, list | tuple) and len(wanted.targets) != 3:
+        what = _("given hinges need three poses, got {count}").format(count=len(wanted.targets))
+        raise Problem(what, _("give three, or remove hinges"), ("hinges",))
+    if (
+        wanted.exact is not None
+        and isinstance(wanted.targets, list | tuple)
+        and len(wanted.targets) != wanted.exact
+    ):
+        what = _("{exact} exact points, and a table of {count}")
+        what = what.format(exact=wanted.exact, count=len(wanted.targets))
+        raise Problem(what, _("a table of three to five rows is met exactly: remove exact"), ("exact",))
+    if wanted.trade_off is not None and wanted.topology not in FOUR_BARS:
+        what = _("a trade-off is found of four-bar linkages in the plane")
+        raise Problem(what, _("remove it"), ("trade_off",))
 
 
 FEWEST = {"path": 3, "function": 3, "motion": 2}
@@ -303,6 +383,12 @@ def _check_targets(kind: str, rows: Rows) -> None:
 
 
 def _check_strokes(wanted: Synthesis) -> None:
+    if wanted.topology is None:
+        # the mechanism of the file: which of stroke, time ratio and dwell are given is its matter
+        return
+    if wanted.dwell is not None:
+        what = _("a dwell is that of a mechanism of a file")
+        raise Problem(what, _("describe its links, and leave out topology"), ("dwell",))
     if wanted.topology not in STROKE_TOPOLOGIES:
         what = _("strokes are synthesised for {names}").format(names=", ".join(STROKE_TOPOLOGIES))
         raise Problem(what, nearest(str(wanted.topology or ""), STROKE_TOPOLOGIES), ("topology",))

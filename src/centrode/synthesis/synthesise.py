@@ -10,9 +10,11 @@ from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.synthesis.answers import SynthesisResults
 from centrode.synthesis.function_synthesis import function_answers
+from centrode.synthesis.mechanism_synthesis import mechanism_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
-from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SYNTHESES, SynthesisTask
+from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SPHERICAL, SYNTHESES, SynthesisTask
+from centrode.synthesis.spherical_synthesis import spherical_answers
 from centrode.synthesis.stroke_synthesis import stroke_answers
 
 SynthesisSource: TypeAlias = SynthesisTask | str | Path | Mapping[str, Any]
@@ -79,10 +81,14 @@ def synthesise(
     """
     task = task_of(source)
     wanted = task.synthesis
+    if task.mechanism is not None:
+        return mechanism_answers(task, progress, stop)
     if wanted.kind == "motion" and wanted.topology in FOUR_BARS and is_exact(task):
         return pose_answers(task, progress, stop)
     if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:
         return path_answers(task, progress, stop)
+    if wanted.topology in SPHERICAL and wanted.kind != "strokes":
+        return spherical_answers(task, progress, stop)
     if wanted.kind == "strokes":
         return stroke_answers(task)
     if wanted.kind == "function" and wanted.topology in FOUR_BARS:

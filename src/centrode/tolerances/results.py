@@ -316,12 +316,6 @@ def need_tolerances(mechanism: Mechanism, **_arguments: Any) -> None:
     limits_of(mechanism)
 
 
-def has_tolerances(mechanism: Mechanism) -> bool:
-    """Whether the description says which numbers deviate."""
-    settings = mechanism.tolerances
-    return settings is not None and (settings.default is not None or bool(settings.dimensions))
-
-
 def _checked_count(given: Any, where: str, least: int, most: int) -> int:
     if isinstance(given, bool) or not isinstance(given, int | np.integer) or not least <= given <= most:
         what = _("{value} is not a whole number from {least} to {most}")

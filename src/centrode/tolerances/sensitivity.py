@@ -351,16 +351,16 @@ def limit_gradient(prepared: Ready, paths: Sequence[str], end: str) -> tuple[flo
     if not prepared.parameter.is_uniform:
         return there.value, blank
     try:
-        found = _radicand_gradient(prepared, tuple(paths), there.value)
+        slopes = _radicand_gradient(prepared, tuple(paths), there.value)
     except Untraceable:
-        found = blank
-    if np.isnan(found).any():
+        slopes = blank
+    if np.isnan(slopes).any():
         # no radicand tells the limit of a group of higher class, the constraints do
         try:
-            found = gradient_at_limit(prepared, paths, there.value)
+            slopes = gradient_at_limit(prepared, paths, there.value)
         except Untraceable:
             return there.value, blank
-    return there.value, found
+    return there.value, slopes
 
 
 def _radicand_gradient(prepared: Ready, paths: tuple[str, ...], limit: float) -> Array:

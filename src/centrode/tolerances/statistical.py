@@ -14,8 +14,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
-from scipy.special import ndtr
-from scipy.stats import beta
+from scipy.special import betaincinv, ndtr
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -148,8 +147,8 @@ class Yield:
 def yield_of(kept: int, drawn: int) -> Yield:
     """Share with its interval of confidence."""
     tail = 0.5 * (1.0 - CONFIDENCE)
-    low = float(beta.ppf(tail, kept, drawn - kept + 1)) if kept else 0.0
-    high = float(beta.ppf(1.0 - tail, kept + 1, drawn - kept)) if kept < drawn else 1.0
+    low = float(betaincinv(kept, drawn - kept + 1, tail)) if kept else 0.0
+    high = float(betaincinv(kept + 1, drawn - kept, 1.0 - tail)) if kept < drawn else 1.0
     return Yield(kept / drawn, low, high)
 
 

@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.topic import ChapterOfTopic, Command, InDocuments, Lazily, Panel, Topic, ValueOption
+from centrode.topics.option_values import READ_BOUNDS, READ_RANGES
+from centrode.topics.topic import (
+    ChapterOfTopic,
+    ChoiceOption,
+    Command,
+    InDocuments,
+    Lazily,
+    Panel,
+    Topic,
+    ValueOption,
+)
 
 SWEEP = Topic(
     name="sweep",
@@ -36,7 +46,7 @@ TOLERANCES = Topic(
     compute=Lazily("centrode.tolerances.results", "tolerance_results"),
     result=Lazily("centrode.tolerances.results", "ToleranceResults"),
     view=Lazily("centrode.views.tolerances", "sheet"),
-    concerns=Lazily("centrode.tolerances.results", "has_tolerances"),
+    concerns=Lazily("centrode.model.mechanism", "has_tolerances"),
     command=Command(
         help=mark("Find how far outputs deviate by tolerances and play."),
         needs=Lazily("centrode.tolerances.results", "need_tolerances"),
@@ -90,4 +100,43 @@ SYNTHESIS = Topic(
     result=Lazily("centrode.synthesis.answers", "SynthesisResults"),
     view=Lazily("centrode.views.synthesis", "sheet"),
     subject="synthesis",
+)
+
+IMPROVEMENT = Topic(
+    name="improve",
+    compute=Lazily("centrode.synthesis.improvement", "improve"),
+    result=Lazily("centrode.synthesis.improvement", "Improvement"),
+    view=Lazily("centrode.views.improvement", "sheet"),
+    command=Command(
+        help=mark("Change dimensions until a number of the motion is least."),
+        options=(
+            ValueOption(
+                "objective",
+                mark("MEASURE"),
+                mark("What is reduced, as stroke(slide_H), reaction(B/AB) or a formula of the motion."),
+                required=True,
+            ),
+            ValueOption(
+                "free",
+                mark("PATH=FIRST:LAST"),
+                mark('Dimension with its range, as "links.AB.length=3.4 m:3.6 m"; repeatable.'),
+                several=True,
+                required=True,
+                read=READ_RANGES,
+            ),
+            ValueOption(
+                "keep",
+                mark("MEASURE=FIRST:LAST"),
+                mark('Number kept within bounds, as "stroke(slide_H)=1.5 m:"; repeatable.'),
+                several=True,
+                parameter="constraints",
+                read=READ_BOUNDS,
+            ),
+            ChoiceOption(
+                "aim", ("least", "greatest"), mark("Whether the objective becomes least or greatest.")
+            ),
+        ),
+        progress=mark("searching"),
+        pictures=False,
+    ),
 )

@@ -36,6 +36,7 @@ COMMANDS = (
     "gears",
     "trains",
     "synthesise",
+    "improve",
     "centres",
     "centrodes",
     "diagrams",

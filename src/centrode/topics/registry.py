@@ -24,6 +24,7 @@ TOPICS: tuple[Topic, ...] = (
     cams.MOTION_LAWS,
     gears.GEAR_PAIR,
     designs.SYNTHESIS,
+    designs.IMPROVEMENT,
     gears.GEAR_TRAIN,
     kinematics.ROTATABILITY,
     kinematics.REPAIR,

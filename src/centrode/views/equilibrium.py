@@ -91,7 +91,7 @@ def place_text(found: xr.Dataset, number: int | None = None) -> Text:
 
 
 def named_values(found: xr.Dataset) -> tuple[list[str], Array, list[str]]:
-    """Names, values and units that tell a position: of free drives if they are enough, else of generalised coordinates."""
+    """Names, values, units that tell a position: of free drives if they are enough, else of generalised coordinates."""
     held = json.loads(found.attrs["hold"]) | json.loads(found.attrs.get("speed", "{}"))
     free = [k for k, name in enumerate(found["drive"].values) if name not in held]
     if len(free) < int(found.attrs["mobility"]) or not free:

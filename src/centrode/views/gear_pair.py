@@ -91,6 +91,8 @@ TEETH_SHOWN = 3
 """Teeth on each side of the mesh in a drawing of it."""
 MOST_SLIDING = 12.0
 """Specific sliding beyond which a curve leaves its figure: at a base circle it is infinite."""
+MOST_PRESSURE = 6.0
+"""Pressure coefficient beyond which a curve leaves its figure, for the same reason."""
 
 
 def sheet(results: GearPairResults) -> Sheet:
@@ -544,7 +546,7 @@ def _sliding(results: GearPairResults) -> Plot:
                 (
                     Curve(
                         Sentence("pressure coefficient"),
-                        np.where(action.pressure > 1e3, np.nan, action.pressure),
+                        np.where(action.pressure > MOST_PRESSURE, np.nan, action.pressure),
                         2,
                     ),
                 ),

@@ -20,7 +20,7 @@ from centrode.sheets.drawing_sheets import (
 )
 from centrode.sheets.plots import AxisLabel
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text
-from centrode.views.gear_pair import MOST_SLIDING, generation_parts, mesh_parts, rack_line
+from centrode.views.gear_pair import MOST_PRESSURE, MOST_SLIDING, generation_parts, mesh_parts, rack_line
 from centrode.views.geometric_drawings import in_degrees
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def _diagrams(results: GearPairResults) -> Iterator[ScaledDiagram]:
     for number, title in enumerate(titles):
         curve = ScaledCurve(NOTHING, along, sliding[:, number])
         yield ScaledDiagram(title, across, AxisLabel(symbol=Symbol("ϑ", str(number + 1))), (curve,))
-    pressure = ScaledCurve(NOTHING, along, np.minimum(action.pressure, 1e3))
+    pressure = ScaledCurve(NOTHING, along, np.minimum(action.pressure, MOST_PRESSURE))
     yield ScaledDiagram(
         Sentence("Pressure coefficient"), across, AxisLabel(symbol=Symbol("ϑ", "p")), (pressure,)
     )

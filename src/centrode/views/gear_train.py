@@ -55,7 +55,7 @@ def sheet(results: GearTrainResults) -> Sheet:
         ),
         pictures=Deferred(
             {
-                "wheels": lambda: _wheels(results),
+                "wheels": lambda: wheels_drawing(results),
                 "velocities": lambda: _velocities(results),
                 "angular-velocities": lambda: _angular_velocities(results),
             }
@@ -148,7 +148,7 @@ def _notes(results: GearTrainResults) -> Iterator[Text]:
             yield Sentence("driven from the sun the train locks itself")
 
 
-def _columns(results: GearTrainResults, trains: tuple[AnyTrain, ...]) -> Iterator[Column]:
+def _columns(trains: tuple[AnyTrain, ...], *, spelled: bool) -> Iterator[Column]:
     first = trains[0]
     letters: list[Text]
     if isinstance(first, PlanetaryTrain):
@@ -160,9 +160,16 @@ def _columns(results: GearTrainResults, trains: tuple[AnyTrain, ...]) -> Iterato
             Symbol("z", str(shown.index(place) + 1)) if place in shown else NOTHING for place in range(8)
         ]
     for place in shown:
-        teeth = np.array([train.teeth[place] for train in trains], dtype=np.int64)
+        teeth = np.array([train.teeth[place] for train in trains], dtype=np.float64)
         name = f"teeth_{shown.index(place) + 1}"
-        yield Column(name, teeth, head=letters[place])
+        yield _whole_column(name, teeth, letters[place], spelled=spelled)
+
+
+def _whole_column(name: str, values: Array, head: Text, *, spelled: bool) -> Column:
+    """Whole numbers: each spelled by itself where people read them, as numbers in files."""
+    if spelled:
+        return Column(name, tuple(Number(value) for value in values.tolist()), head=head)
+    return Column(name, values, head=head, whole=True)
 
 
 def trains_table(results: GearTrainResults, most: int | None) -> Table:
@@ -172,8 +179,10 @@ def trains_table(results: GearTrainResults, most: int | None) -> Table:
     length = Sentence("length") if isinstance(trains[0], OrdinaryTrain) else Sentence("diameter")
     return Table(
         (
-            Column("number", np.arange(1, len(trains) + 1, dtype=np.int64), head=Sentence("number")),
-            *_columns(results, trains),
+            _whole_column(
+                "number", np.arange(1.0, len(trains) + 1), Sentence("number"), spelled=most is not None
+            ),
+            *_columns(trains, spelled=most is not None),
             Column(
                 "ratio", np.array([results.whole_ratio(train) for train in trains]), head=Sentence("ratio")
             ),
@@ -287,7 +296,7 @@ def _circle(layer: str, centre: tuple[float, float], radius: float) -> OutlinePi
     return OutlinePiece(layer, angles, radius * arms + np.array(centre), radius * across)
 
 
-def _wheels(results: GearTrainResults) -> OutlineDrawing:
+def wheels_drawing(results: GearTrainResults) -> OutlineDrawing:
     """Pitch circles of the chosen train seen along the axes; stages stand beside each other."""
     train, radius = results.chosen, results.gear_train.module / 2
     pieces: list[OutlinePiece] = []

@@ -46,6 +46,10 @@ def sheet(results: ModesResults) -> Sheet:
         datasets={"modes": found},
         pictures=Deferred(dict(_pictures(results))),
         chapters={"modes": _chapter(results)},
+        printed=tuple(
+            MotionPlayer(results.mechanism, results.motions[k], by_time=True, title=_title(results, k))
+            for k in range(min(len(results.motions), DRAWN))
+        ),
     )
 
 
@@ -110,12 +114,14 @@ def _pictures(results: ModesResults) -> Iterator[tuple[str, Callable[[], Picture
         yield f"mode-{k + 1}", partial(_shape, results, k)
 
 
+def _title(results: ModesResults, k: int) -> Sentence:
+    number = Number(k + 1, digits="d")
+    return Sentence("Mode {number}: {frequency}", number=number, frequency=_mode_text(results.modes, k))
+
+
 def _shape(results: ModesResults, k: int) -> MechanismPicture:
     """The mechanism in its equilibrium over fading pictures of the mode, drawn larger than it is."""
-    title = Sentence(
-        "Mode {number}: {frequency}", number=Number(k + 1, digits="d"), frequency=_mode_text(results.modes, k)
-    )
-    return MechanismPicture(title, results.mechanism, results.motions[k], captioned=False)
+    return MechanismPicture(_title(results, k), results.mechanism, results.motions[k], captioned=False)
 
 
 def _chapter(results: ModesResults) -> Chapter:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.sheets.sheet import Column, Fact, Table
-from centrode.sheets.texts import Counted, Expression, Joined, Name, Number, Sentence, Text
+from centrode.sheets.texts import Expression, Joined, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -110,11 +110,6 @@ def event_table(run: xr.Dataset, caption: bool = False) -> Table:
         ),
         Sentence("Events of the motion, with impulses and lost energies") if caption else Sentence("Events"),
     )
-
-
-def event_count(run: xr.Dataset) -> Text:
-    """How many events there were."""
-    return Counted("{n} event", "{n} events", int(run.sizes["occasion"]))
 
 
 def event_marks(run: xr.Dataset) -> tuple[tuple[Text, float], ...]:

@@ -42,6 +42,7 @@ NUMBERS = {
     "time_ratio": Sentence("time ratio"),
     "stroke": Sentence("stroke"),
     "swing": Sentence("swing"),
+    "dwell_spread": Sentence("motion during the dwell"),
     "limit_angle": Sentence("angle of the crank between the limit positions"),
 }
 
@@ -63,7 +64,11 @@ def sheet(results: SynthesisResults) -> Sheet:
 
 
 def _error_unit(results: SynthesisResults) -> str:
-    return "rad" if results.task.synthesis.kind == "function" else "m"
+    return "rad" if results.task.synthesis.kind == "function" or _on_sphere(results) else "m"
+
+
+def _on_sphere(results: SynthesisResults) -> bool:
+    return results.mechanism.space == "sphere"
 
 
 def _facts(results: SynthesisResults) -> Iterator[Fact]:
@@ -82,7 +87,8 @@ def _facts(results: SynthesisResults) -> Iterator[Fact]:
         yield Fact(Sentence("greatest error of the best"), Number(best.greatest, unit, digits=".4g"))
     if wanted.kind == "path":
         yield Fact(
-            Sentence("sum of squared errors of the best"), Number(best.sum_of_squares, "m^2", digits=".6g")
+            Sentence("sum of squared errors of the best"),
+            Number(best.sum_of_squares, f"{unit}^2", digits=".6g"),
         )
     if math.isfinite(best.transmission):
         yield Fact(Sentence("least transmission angle of the best"), Number(best.transmission, "rad"))
@@ -129,15 +135,17 @@ def _table(results: SynthesisResults) -> Table:
     if np.isfinite(transmission).any():
         columns.append(Column("transmission", transmission, "rad", head=Sentence("least transmission angle")))
     width, height = np.array([one.size for one in answers]).T
-    columns += [
-        Column("width", width, "m", head=Sentence("width")),
-        Column("height", height, "m", head=Sentence("height")),
-        Column("defects", tuple(_defects(one) for one in answers), head=Sentence("defects")),
-    ]
+    if np.isfinite(width).any():
+        columns += [
+            Column("width", width, "m", head=Sentence("width")),
+            Column("height", height, "m", head=Sentence("height")),
+        ]
+    columns.append(Column("defects", tuple(_defects(one) for one in answers), head=Sentence("defects")))
     for link in answers[0].mechanism.links:
         values = np.array([_length(one, link) for one in answers])
         if np.isfinite(values).any():
-            columns.append(Column(f"length_{link}", values, "m", head=Name(link)))
+            of_length = "rad" if _on_sphere(results) else "m"
+            columns.append(Column(f"length_{link}", values, of_length, head=Name(link)))
     return Table(tuple(columns), Sentence("Answers"))
 
 
@@ -169,6 +177,9 @@ def _length(answer: Answer, name: str) -> float:
         return math.nan
     named = two_points(name)
     at = link.coordinates
+    if answer.mechanism.space == "sphere":
+        # A lies at longitude 0 of the coupler's axes, B on their equator
+        return float(link.length or at["B"][0])
     places = [at[end] for end in named] if named and set(named) <= set(at) else list(at.values())
     return math.dist(places[0], places[1]) if len(places) > 1 else math.nan
 
@@ -178,13 +189,18 @@ def _curve_tables(results: SynthesisResults) -> dict[str, Callable[[], Table]]:
     tables: dict[str, Callable[[], Table]] = {}
     for number, answer in enumerate(results.answers, 1):
         if len(answer.curve):
-            tables[f"curve-{number}"] = partial(_places_table, answer.curve)
+            tables[f"curve-{number}"] = partial(_places_table, answer.curve, on_sphere=_on_sphere(results))
     for name, places in results.curves.items():
         tables[name.replace("_", "-")] = partial(_places_table, places)
     return tables
 
 
-def _places_table(places: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]) -> Table:
+def _places_table(
+    places: np.ndarray[tuple[int, ...], np.dtype[np.complex128]], on_sphere: bool = False
+) -> Table:
+    if on_sphere:
+        columns = [("longitude", places.real.copy()), ("latitude", places.imag.copy())]
+        return Table(tuple(Column(name, values, "rad") for name, values in columns))
     return Table((Column("x", places.real.copy(), "m"), Column("y", places.imag.copy(), "m")))
 
 
@@ -225,7 +241,9 @@ def _planar(places: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]) -> Arr
     return np.column_stack([places.real, places.imag])
 
 
-def _labels() -> tuple[AxisLabel, AxisLabel]:
+def _labels(results: SynthesisResults) -> tuple[AxisLabel, AxisLabel]:
+    if _on_sphere(results):
+        return AxisLabel(Sentence("longitude"), unit="rad"), AxisLabel(Sentence("latitude"), unit="rad")
     return AxisLabel(symbol=Symbol("x"), unit="m"), AxisLabel(symbol=Symbol("y"), unit="m")
 
 
@@ -234,19 +252,24 @@ def _map(results: SynthesisResults, title: Title) -> CurveMap:
     for number, answer in enumerate(results.answers, 1):
         if not len(answer.curve):
             continue
-        curve = MapCurve(Sentence("path of the point"), _planar(answer.curve), 0)
+        places = answer.curve
+        if _on_sphere(results):
+            # at longitude 180 deg the map has its edge
+            jump = np.append(np.abs(np.diff(places.real)) > np.pi, False)
+            places = np.where(jump, complex(np.nan, np.nan), places)
+        curve = MapCurve(Sentence("path of the point"), _planar(places), 0)
         panels.append(
             MapPanel(
                 Sentence("answer {number}", number=Number(number, digits="d")),
                 (curve,),
                 _planar(results.targets),
                 tuple(_skeleton(answer)),
-                np.array(list(answer.mechanism.frame.points.values()), dtype=np.float64),
+                np.array([place[:2] for place in answer.mechanism.frame.points.values()], dtype=np.float64),
                 _arrows(results),
             )
         )
     return CurveMap(
-        Sentence("Answers with their curves"), title, *_labels(), Sentence("targets"), tuple(panels)
+        Sentence("Answers with their curves"), title, *_labels(results), Sentence("targets"), tuple(panels)
     )
 
 
@@ -254,7 +277,7 @@ def _skeleton(answer: Answer) -> Iterator[Array]:
     """Links of a four-bar linkage where the point is at the first target, by the angle of the crank."""
     mechanism = answer.mechanism
     links = mechanism.links
-    if set(links) != {"OA", "AB", "DB"} or not len(answer.drive):
+    if mechanism.space != "plane" or set(links) != {"OA", "AB", "DB"} or not len(answer.drive):
         return
     at = np.array([mechanism.frame.points[name] for name in ("O", "D")], dtype=np.float64)
     fixed, other = at[:, 0] + 1j * at[:, 1]
@@ -298,7 +321,7 @@ def _pose_curves(results: SynthesisResults, title: Title) -> CurveMap:
         curves.append(MapCurve(names[name], _planar(shown), place))
     panel = MapPanel(NOTHING, tuple(curves), _planar(results.targets), arrows=_arrows(results))
     return CurveMap(
-        Sentence("Centre points and circle points"), title, *_labels(), Sentence("poses"), (panel,)
+        Sentence("Centre points and circle points"), title, *_labels(results), Sentence("poses"), (panel,)
     )
 
 

@@ -189,3 +189,25 @@ def test_what_has_no_equilibrium_says_why(made: object, words: str) -> None:
 def test_a_moment_that_nothing_balances_finds_no_equilibrium() -> None:
     with pytest.raises(ct.MotionError, match="no equilibrium is found"):
         ct.equilibrium(pendulum(loads=[{"kind": "torque", "link": "OA", "value": 6.0}]))
+
+
+def test_static_friction_holds_and_stops_forbid() -> None:
+    found = ct.equilibrium(
+        pendulum(
+            loads=[{"kind": "friction", "link": "OA", "value": 1.0, "static": 2.0}],
+            stops=[{"link": "OA", "least": -2.0, "most": 0.0}],
+        )
+    )
+    assert np.allclose(found.angle.values[:, 0], -math.pi / 2, atol=1e-12)
+    widths = np.ptp(found.friction_band.values[:, :, 0], axis=1)
+    assert np.allclose(widths, 2 * math.asin(2.0 / (9.81 * 0.5)), rtol=1e-12)
+
+
+def test_a_motor_gives_its_moment_at_rest() -> None:
+    rod = pendulum(
+        drives=[{"link": "OA", "start": 0}],
+        motors=[{"drive": "OA", "kind": "linear", "idle_speed": 100, "starting_moment": 2.0}],
+    )
+    found = ct.equilibrium(rod)
+    # m g l / 2 cos q = M
+    assert np.allclose(np.cos(found.angle.values[:, 0]), 2.0 / (9.81 * 0.5), rtol=1e-12)

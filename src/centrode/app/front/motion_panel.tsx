@@ -35,7 +35,7 @@ const courses = computed<Course[]>(() => {
       const symbol = SYMBOLS[array]!;
       const lines: Course["lines"] = AXES.slice(0, now.axes).map((axis, k) => ({ label: symbol ? `${symbol}${axis}(${point.name})` : `${axis}(${point.name})`, array, thing, axis: k }));
       if (symbol) lines.push({ label: `${symbol}(${point.name})`, array, thing, axis: "size" });
-      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? `1${rate}` : "") : signed(`${length.unit}${rate}`), factor: length.factor, lines });
+      found.push({ key: `point ${point.name} ${kind}`, group: point.name, label: say(`course_${kind}`, { name: point.name }), unit: length.unit === "1" ? (rate ? signed(`1${rate}`) : "") : signed(`${length.unit}${rate}`), factor: length.factor, lines });
     }
   }
   for (const link of shown.links) {

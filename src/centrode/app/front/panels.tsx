@@ -78,6 +78,42 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
   );
 }
 
+// A motion that begins again where it ends: lines of links between their points, moved by the time of the page.
+function SwingView({ block }: { block: Extract<Block, { kind: "swing" }> }) {
+  const svg = useRef<SVGSVGElement>(null);
+  const all = block.places.flat(), xs = all.filter((_, k) => k % 2 === 0), ys = all.filter((_, k) => k % 2 === 1);
+  const low = [Math.min(...xs), Math.min(...ys)], wide = [Math.max(...xs) - low[0]!, Math.max(...ys) - low[1]!];
+  const margin = 0.08 * Math.max(...wide, 1e-9), scale = 320 / (Math.max(...wide, 1e-9) + 2 * margin);
+  const place = (frame: number[], k: number): [number, number] => [(frame[2 * k]! - low[0]! + margin) * scale, (low[1]! + wide[1]! - frame[2 * k + 1]! + margin) * scale];
+  const line = (frame: number[], link: number[]): string => link.map((k, n) => `${n ? "L" : "M"}${place(frame, k).map((x) => x.toFixed(1)).join(" ")}`).join("") + (link.length > 2 ? "Z" : "");
+  useEffect(() => {
+    const root = svg.current, still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (!root || still) return;
+    const paths = [...root.querySelectorAll("path")], dots = [...root.querySelectorAll("circle")];
+    // No faster than the eye follows, no slower than it waits.
+    const period = 1000 * Math.min(Math.max(block.period, 1.2), 4), count = block.places.length - 1;
+    let handle = 0;
+    const draw = (now: number): void => {
+      const frame = block.places[Math.floor(((now % period) / period) * count)]!;
+      paths.forEach((path, k) => path.setAttribute("d", line(frame, block.links[k]!)));
+      dots.forEach((dot, k) => { const [x, y] = place(frame, k); dot.setAttribute("cx", x.toFixed(1)); dot.setAttribute("cy", y.toFixed(1)); });
+      handle = requestAnimationFrame(draw);
+    };
+    handle = requestAnimationFrame(draw);
+    return () => cancelAnimationFrame(handle);
+  }, [block]);
+  const first = block.places[0]!;
+  return (
+    <figure class="swing">
+      <svg ref={svg} role="img" aria-label={block.title || say("picture")} viewBox={`0 0 ${(wide[0]! + 2 * margin) * scale} ${(wide[1]! + 2 * margin) * scale}`}>
+        {block.links.map((link, k) => <path class={`hue-${k % 6}`} d={line(first, link)} />)}
+        {block.points.map((_, k) => { const [x, y] = place(first, k); return <circle class={block.fixed[k] ? "fixed" : ""} cx={x} cy={y} r={4} />; })}
+      </svg>
+      {block.title && <figcaption>{typeset(block.title)}</figcaption>}
+    </figure>
+  );
+}
+
 function BlockView({ block }: { block: Block }) {
   const kept = useRef<{ block: Block; data: Parameters<typeof ChartView>[0]["data"][] } | null>(null);
   switch (block.kind) {
@@ -98,6 +134,8 @@ function BlockView({ block }: { block: Block }) {
           {block.title && <figcaption>{block.title}</figcaption>}
         </figure>
       );
+    case "swing":
+      return <SwingView block={block} />;
     case "plot": {
       const now = motion.value, follows = Boolean(block.cursor) && now !== null && block.x.values.length === now.samples;
       if (kept.current?.block !== block) {

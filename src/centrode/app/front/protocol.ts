@@ -222,6 +222,7 @@ export type Block =
   | { kind: "table"; title?: string; columns: Column[]; rows: (string | number | null)[][] }
   | { kind: "plot"; title?: string; x: Curve; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[] }
   | { kind: "picture"; title?: string; svg: string; dark?: string; alt?: string }
+  | { kind: "swing"; title?: string; period: number; points: string[]; fixed: boolean[]; links: number[][]; places: number[][] }
   | { kind: "formula"; text?: string; mathml?: string }
   | { kind: "paragraph"; text: string; item?: boolean }
   | { kind: "heading"; text: string }

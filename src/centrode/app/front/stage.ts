@@ -447,7 +447,8 @@ export class Stage {
     for (const [spot, target] of [[a, line.target], [b, line.end]] as const) {
       make("circle", { class: target ? "catch" : "end", cx: spot[0]!, cy: spot[1]!, r: target ? 105 : 45 }, this.hint);
     }
-    const right = b[0]! >= a[0]!; // beside the end that the hand leads, away from the line
+    // beside the end that the hand leads, away from the line where there is room for it
+    const room = 140 * U, right = b[0]! >= a[0]! ? b[0]! + room < this.plane.wide * U : b[0]! - room < 0;
     const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (b[1]! <= a[1]! ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
     const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI, length = this.spherical ? arc(line.from, line.to) : size(way);
     const measured = withUnit(spelled(length * unit.factor, 4), unit.unit);

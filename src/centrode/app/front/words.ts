@@ -50,7 +50,7 @@ export const withUnit = (text: string, unit?: string | null): string => {
 };
 
 // A clause of the server's as a sentence; what begins with a symbol or a function keeps its letter.
-const FORMULA = /^\S*[\d_(=|]|^\S+ =/;
+const FORMULA = /^\S*[\d_(=|]|^\S+ =|^\p{Script=Greek}/u;
 export const sentence = (text: string | null | undefined): string => {
   const plain = (text ?? "").trim();
   return plain && (FORMULA.test(plain) ? plain[0]! : plain[0]!.toLocaleUpperCase()) + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");

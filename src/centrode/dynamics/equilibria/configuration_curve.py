@@ -20,7 +20,7 @@ SHORTEST = 1e-5
 MOST_STEPS = 6000
 FAR = 20.0
 """Displacements beyond this many greatest lengths are not followed."""
-TURNS = 3
+TURNS = 1
 """Rounds in each sense where the loads do not repeat with the position."""
 
 

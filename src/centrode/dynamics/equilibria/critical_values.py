@@ -23,7 +23,7 @@ from centrode.dynamics.equilibria.configuration_curve import repeats_with_positi
 from centrode.dynamics.equilibria.equilibrium_search import settled
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
-from centrode.errors import InputError, NotComputedYet
+from centrode.errors import NotComputedYet
 from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -34,7 +34,7 @@ KINDS = (FOLD, BRANCH_POINT, HOPF)
 DEGREE = 20
 """Of the polynomial in which numbers of the equations are expanded along the parameter."""
 EXACT = 1e-12
-FIRST, LONGEST, LEAST = 0.01, 0.04, 1e-7
+FIRST, LONGEST, LEAST = 0.01, 0.06, 1e-7
 """Steps along the curve, in rad, greatest lengths, and shares of the range of the number."""
 MOST_STEPS = 1500
 CORRECTED = 1e-12
@@ -127,12 +127,10 @@ def number_range(
     Raises
     ------
     InputError
-        The range is empty, or the mechanism cannot be made at one of its ends.
+        The mechanism cannot be made with one of the values.
     NotComputedYet
         The number changes more than the numbers of the equations, or these not smoothly.
     """
-    if not low < high:
-        raise InputError(where, _("the range is empty: {low:.6g} to {high:.6g}").format(low=low, high=high))
     nodes = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(
         np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
     )

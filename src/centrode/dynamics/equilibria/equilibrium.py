@@ -114,6 +114,9 @@ def equilibrium(
     """
     description = mechanism_of(mechanism)
     held = held_values(description, hold)
+    if vary is not None:
+        # what is wrong is said before anything is sought
+        _range_of(description, vary)
     loaded = loaded_mechanism(description.with_drives_held(), held)
     found = stable_first(find_equilibria(loaded))
     if progress is not None:
@@ -186,12 +189,13 @@ def _branches(
     vary: Mapping[str, Sequence[Value]],
     progress: Callable[[float], None] | None,
 ) -> tuple[EquilibriumBranch, ...]:
-    """The branches through the equilibria of the description, and of both ends of the range."""
+    """The branches through the equilibria of the description; with one degree of freedom of both ends too."""
     path, low, high = _range_of(description, vary)
     along = number_range(partial(_with_number, description, held, path), low, high, path)
     here = value_at(description, path)
     seeds = [(here, found.places)] if low <= here <= high else []
-    for value in (low, high):
+    # with more degrees of freedom each search takes long, and there are many branches already
+    for value in (low, high) if found.curve is not None or not seeds else ():
         try:
             seeds.append((value, find_equilibria(_with_number(description, held, path, value)).places))
         except MotionError:
@@ -209,6 +213,8 @@ def _range_of(description: Mechanism, vary: Mapping[str, Sequence[Value]]) -> tu
     ((path, bounds),) = vary.items()
     kind = kind_at(description, path)
     low, high = (read_quantity(one, kind, path) if kind in QUANTITY_KINDS else float(one) for one in bounds)
+    if not low < high:
+        raise InputError(path, _("the range is empty: {low:.6g} to {high:.6g}").format(low=low, high=high))
     return path, low, high
 
 

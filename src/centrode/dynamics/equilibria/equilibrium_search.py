@@ -22,8 +22,11 @@ from centrode.dynamics.equilibria.configuration_curve import (
     same_position,
 )
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
+from centrode.dynamics.forward_dynamics.contacts import coordinate_of_part
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -85,7 +88,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     found = settled(loaded, starts)
     if curve is None:
         found = np.concatenate([found, settled(loaded, approached(loaded, starts[::2]))])
-    places = _distinct(loaded, found[np.isfinite(found[:, 0])])
+    places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
     if not len(places):
         what = _("no equilibrium is found from {count} positions")
         raise MotionError(
@@ -220,6 +223,23 @@ def _moved(
     lost = ~np.isfinite(ahead[:, 0])
     ahead[lost] = places[lost]
     return ahead, np.where(lost, np.inf, longest)
+
+
+def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
+    """Those of some positions (n, coordinates) that no stop forbids."""
+    kept = np.ones(len(places), dtype=bool)
+    for stop in loaded.mechanism.stops:
+        coordinate = coordinate_of_part(loaded.mechanism, stop)
+        for k, place in enumerate(places):
+            jets = [Jet((x, 0.0, 0.0)) for x in place]
+            state = loaded.equations.state(
+                ARRAYS, loaded.equations.tree.values(ARRAYS, list(place)), jets, 0.0
+            )
+            value = float(coordinate.value(state))
+            low = -np.inf if stop.least is None else float(stop.least)
+            high = np.inf if stop.most is None else float(stop.most)
+            kept[k] &= low <= value <= high
+    return places[kept]
 
 
 def _distinct(loaded: LoadedMechanism, places: Array) -> Array:

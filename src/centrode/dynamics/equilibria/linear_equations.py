@@ -11,7 +11,7 @@ is traced once and differentiated by the chain rule, so nothing is taken by diff
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
-from centrode.dynamics.forward_dynamics.free_loads import DriveEffort, free_loads_of, shafts_of
+from centrode.dynamics.forward_dynamics.free_loads import free_loads_of, has_sense, is_dry, shafts_of
 from centrode.dynamics.forward_dynamics.initial_position import (
     InitialPosition,
     equation_units,
@@ -31,7 +31,8 @@ from centrode.dynamics.forward_dynamics.initial_state import drive_values, initi
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
 from centrode.dynamics.forward_dynamics.spanning_tree import JointCoordinate, spanning_tree_of
 from centrode.dynamics.loads import AppliedLoad, Constant, Friction, LoadTerm, MassesAndLoads, Situation
-from centrode.errors import InputError
+from centrode.dynamics.simulation.multibody_motion import driving_efforts
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.path import DrivenBy
 from centrode.laws import Uniform
 from centrode.locale import _
@@ -357,7 +358,6 @@ def loaded_mechanism(
     mechanism: Mechanism,
     hold: Mapping[str, float] | None = None,
     speeds: Mapping[str, float] | None = None,
-    efforts: Sequence[DriveEffort] = (),
 ) -> LoadedMechanism:
     """A mechanism under its loads, all drives being free but those that are held or turn steadily.
 
@@ -365,14 +365,13 @@ def loaded_mechanism(
     ----------
     hold : id of a drive -> value at which it is held [rad or m; on the sphere of guides rad]
     speeds : id of a drive -> constant speed that it keeps [rad/s or m/s], from its value in the initial position on
-    efforts : forces and moments of drives besides the loads
 
     Raises
     ------
     InputError
         It does not close, there is neither mass nor load, a drive is not known, or something depends on time.
     NotComputedYet
-        A load that acts in one sense of a motion alone, a plain sum of friction, friction by coefficients.
+        A load with a force for each sense of a motion, a running belt, a plain sum of friction, a controller.
     """
     hold, speeds = hold or {}, speeds or {}
     for name in (*hold, *speeds):
@@ -382,8 +381,11 @@ def loaded_mechanism(
     tree = spanning_tree_of(mechanism)
     position = position_of_description(mechanism, tree)
     burden = MassesAndLoads.of(mechanism)
-    smooth, frictions = split_friction(burden.loads)
-    loads = free_loads_of(mechanism, smooth, efforts)
+    frictions = _dry_frictions(mechanism, burden.loads)
+    kept_names = (*hold, *speeds)
+    _check_controllers(mechanism, kept_names)
+    motors = [one for one in driving_efforts(mechanism, "0") if one.drive not in kept_names]
+    loads = free_loads_of(mechanism, burden.loads, motors)
     _check_times(loads)
     equations = EquationsOfMotion(
         tree, position.numbers, burden.masses, loads, (), shafts=shafts_of(mechanism)
@@ -397,21 +399,31 @@ def loaded_mechanism(
     return LoadedMechanism(mechanism, replace(equations, kept=kept), position, frictions)
 
 
-def split_friction(
-    loads: Sequence[AppliedLoad],
-) -> tuple[tuple[AppliedLoad, ...], tuple[DryFriction, ...]]:
-    """Loads without their dry frictions, and these."""
-    smooth, frictions = [], []
-    for load in loads:
-        efforts = []
+def _dry_frictions(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[DryFriction, ...]:
+    """Dry frictions, by what they hold where they stick."""
+    found = []
+    for load, described in zip(loads, mechanism.loads, strict=False):
         for term in load.efforts:
-            amount = term.amount
-            if isinstance(amount, Friction) and amount.sensed and term.gate is None and term.works is None:
-                frictions.append(DryFriction(load.label, replace(term, amount=amount.dry)))
-                amount = replace(amount, dry=Constant(0.0))
-            efforts.append(replace(term, amount=amount))
-        smooth.append(replace(load, efforts=tuple(efforts)))
-    return tuple(smooth), tuple(frictions)
+            if has_sense(term):
+                what = _("a load with a force for each sense of a motion has none at rest")
+                raise NotComputedYet(load.where, what, _("give it one force"))
+            if not is_dry(term):
+                continue
+            if getattr(described, "surface_speed", 0.0):
+                what = _("a belt that runs goes on pushing: there is no rest")
+                raise NotComputedYet(load.where, what, _("simulate it"))
+            assert isinstance(term.amount, Friction)
+            static = getattr(described, "static", None)
+            held = term.amount.dry if static is None else Constant(static)
+            found.append(DryFriction(load.label, replace(term, amount=held)))
+    return tuple(found)
+
+
+def _check_controllers(mechanism: Mechanism, kept: Collection[str]) -> None:
+    for one in mechanism.controllers:
+        if one.drive is not None and one.drive not in kept:
+            what = _("what a controller gives at rest is not sought")
+            raise NotComputedYet(f"[[controllers]] {one.name}", what, _("hold its drive, or remove it"))
 
 
 def _kept_drives(mechanism: Mechanism, kept: Mapping[str, tuple[float, float]]) -> tuple[KeptDrive, ...]:

@@ -42,11 +42,12 @@ def posed_motion(loaded: LoadedMechanism, times: Array, places: Array) -> xr.Dat
     setting = MultibodySetting(loaded.mechanism, Simulation(duration=1.0))
     setting.__dict__["free"] = free
     names = MotionNames.of(equations)
-    rows = np.zeros((1 + len(names.unknowns) + len(names.flags), len(times)))
+    carried = (*names.unknowns, *names.flags)
+    rows = np.zeros((1 + len(carried), len(times)))
     rows[0] = times
     rows[1:][names.part(names.coordinates)] = places.T
     steps = MotionSteps(rows[:, :1], DURATION, None, 0)
-    course = trajectory_of(equations, steps, times, rows[1:], "adaptive", "arrays")
+    course = trajectory_of(equations, carried, steps, times, rows[1:], "adaptive", "arrays")
     found = multibody_dataset(setting, course)
     kept = found[[name for name in SHOWN if name in found]]
     return kept.assign(potential_energy=kept["potential_energy"].copy(data=potential_energy(loaded, places)))

@@ -139,7 +139,7 @@ class WorkedSteps:
     def assumptions(self, joints: Sequence[StaticJoint]) -> None:
         """Add what is left out of meshes, and of contacts that something else keeps."""
         for joint in joints:
-            if joint.kind == "mesh":
+            if joint.kind == "mesh" and not joint.inclined:
                 self.add(
                     Assumption(joint, Neglect.TOOTH_PRESSURE if joint.has_force else Neglect.PITCH_POINT)
                 )

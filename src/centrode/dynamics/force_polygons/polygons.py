@@ -42,8 +42,10 @@ from centrode.dynamics.kinetostatics.applied_forces import (
     InputMotion,
     MotionOfDrive,
     check_motion,
+    outer_of,
     steady_grid,
 )
+from centrode.dynamics.kinetostatics.radial_forces import tangential_forces_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduce_state
 from centrode.dynamics.state import DriveMotion, State
@@ -448,7 +450,7 @@ def force_polygons(
     bodies = FreeBodies.of(prepared.structure)
     state, rates, source = _state(solved, burden) if pace is None else _real_state(solved, pace)
     outer = outer_actions(burden, state, rates, drawing, bodies)
-    joints = joints_of(prepared.structure, bodies, drawing)
+    joints = joints_of(prepared.structure, bodies, drawing, _teeth(prepared, state, rates, burden))
     ledger = Ledger.of(bodies, joints, outer, float(drawing.numbers.scale))
     cells = cells_of(prepared.structure, bodies, joints)
     groups = tuple(_group(cell, ledger, room) for cell in cells)
@@ -470,6 +472,15 @@ def force_polygons(
         paper,
         None if pace is None else pace.group,
     )
+
+
+def _teeth(prepared: Ready, state: State, rates: Rates, burden: MassesAndLoads) -> dict[str, complex]:
+    """Tangential forces on the second wheels of pairs of gears [N]: which flanks bear follows from all loads."""
+    if not any(gear.pair for gear in prepared.mechanism.gears):
+        return {}
+    outer = outer_of(state, burden, np.array([rates.second]), state.exists)
+    forces = tangential_forces_at(prepared, state, outer)
+    return {name: complex(*force[0]) for name, force in forces.items()}
 
 
 def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:

@@ -8,10 +8,12 @@ so a hinge of k bodies is k - 1 hinges.
 from __future__ import annotations
 
 import cmath
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
@@ -152,6 +154,7 @@ class StaticJoint:
     bases : unknowns: unit force and unit moment on a body of share 1
     along : unit vector of a guide, or of what a drive pushes along
     alone : whether no other joint has reactions between the same bodies
+    inclined : whether the force between teeth has its radial part
     """
 
     kind: Kind
@@ -161,6 +164,7 @@ class StaticJoint:
     bases: tuple[Basis, ...]
     along: complex = 0j
     alone: bool = True
+    inclined: bool = False
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -187,21 +191,26 @@ class StaticJoint:
 XY: tuple[Basis, ...] = ((1 + 0j, 0.0), (1j, 0.0))
 
 
-def joints_of(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) -> tuple[StaticJoint, ...]:
-    """All joints as they stand, hinges first; `alone` is false where two joints join the same bodies."""
+def joints_of(
+    structure: Structure,
+    bodies: FreeBodies,
+    drawing: VectorDrawing,
+    teeth: Mapping[str, complex] = MappingProxyType({}),
+) -> tuple[StaticJoint, ...]:
+    """All joints as they stand, hinges first; `alone` is false where two joints join the same bodies.
+
+    `teeth` are tangential forces on the second wheels of pairs of gears [N]: their senses say which flanks bear.
+    """
     found = [
         *_hinges(bodies, drawing),
         *_guides(bodies, drawing),
-        *_wheels(structure, bodies, drawing),
+        *_wheels(structure, bodies, drawing, teeth),
         *(_drive(drive, bodies, drawing) for drive in structure.mechanism.drives),
     ]
     reactions = [joint for joint in found if joint.kind != "drive" and joint.has_force]
     # two joints between the same bodies have reactions of one name: the joint is added to it then
     pairs = Counter(frozenset(joint.bodies) for joint in reactions)
-    return tuple(
-        StaticJoint(j.kind, j.name, j.shares, j.place, j.bases, j.along, pairs[frozenset(j.bodies)] < 2)
-        for j in found
-    )
+    return tuple(replace(joint, alone=pairs[frozenset(joint.bodies)] < 2) for joint in found)
 
 
 def _hinges(bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]:
@@ -218,11 +227,13 @@ def _guides(bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]
         yield StaticJoint("guide", guide.id, shares, drawing.point(guide.point), bases, along)
 
 
-def _wheels(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]:
+def _wheels(
+    structure: Structure, bodies: FreeBodies, drawing: VectorDrawing, teeth: Mapping[str, complex]
+) -> Iterator[StaticJoint]:
     redundant = {one.rolling for one in structure.redundant if isinstance(one, Contact)}
     for constraint in structure.constraints:
         if isinstance(constraint, GearRatio):
-            yield _mesh(constraint, bodies, drawing)
+            yield _mesh(constraint, bodies, drawing, teeth.get(constraint.gear))
         if isinstance(constraint, NoSlip):
             at = complex(*contact_point(constraint, PLAIN, drawing.numbers, drawing.at))
             apart = drawing.point(constraint.centre) - at
@@ -234,10 +245,11 @@ def _wheels(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) ->
             yield StaticJoint("rolling", constraint.rolling, shares, at, bases, across)
 
 
-def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: VectorDrawing) -> StaticJoint:
-    """A force square to the line of centres at the pitch point; moments alone where nothing tells that point.
+def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: VectorDrawing, tooth: complex | None) -> StaticJoint:
+    """A force at the pitch point along the line of action; moments alone where nothing tells that point.
 
-    The radial part of a tooth's force, which presses the wheels apart, is left out.
+    Of a gear without a pair nothing tells the pressure angle: its force is square to the line of centres, and the
+    radial part, which presses the wheels apart, is left out.
     """
     weights = gear.weights(drawing.numbers)
     ratio = float(drawing.numbers.gearing.ratio[gear.gear])
@@ -247,9 +259,16 @@ def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: VectorDrawing) -> Static
         # where both wheels have one velocity against the carrier: w1 (P - A) = w2 (P - B) with w2 = i w1
         pitch = (first - ratio * second) / (1.0 - ratio)
         across = 1j * (pitch - second) / abs(pitch - second)
-        return StaticJoint(
-            "mesh", gear.gear, {gear.first: -1.0, gear.second: 1.0}, pitch, ((across, 0.0),), across
-        )
+        pair = next(one.pair for one in bodies.mechanism.gears if one.id == gear.gear)
+        if pair is not None and tooth:
+            # which flanks bear decides on which side of the tangent the line of action lies
+            sense = 1.0 if (tooth * across.conjugate()).real >= 0.0 else -1.0
+            away = (second - first) / abs(second - first)
+            angle = pair.working_mesh()[0]
+            across = across * math.cos(angle) + sense * pair.turns * away * math.sin(angle)
+        shares = {gear.first: -1.0, gear.second: 1.0}
+        inclined = pair is not None and bool(tooth)
+        return StaticJoint("mesh", gear.gear, shares, pitch, ((across, 0.0),), across, inclined=inclined)
     shares = {link: float(weight) for link, weight in weights.items() if weight != 0.0}
     return StaticJoint("mesh", gear.gear, shares, 0j, ((0j, 1.0),))
 

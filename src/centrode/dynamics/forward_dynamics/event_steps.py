@@ -78,7 +78,7 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-# SciPy takes longer to load than most motions take
+# motions without contacts seek no instants, and SciPy takes longer to load than they take
 _optimize = partial(import_module, "scipy.optimize")
 
 _END = CONTROLS.index(END)

@@ -195,12 +195,12 @@ class FreeMotion:
         states = integration.states_at(steps, times, executor)
         return trajectory_of(
             self.equations,
-            integration.problem.carried,
             steps,
             times,
             states,
             scheme,
             choose_executor(executor),
+            integration.problem.carried,
         )
 
 

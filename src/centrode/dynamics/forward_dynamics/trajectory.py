@@ -100,22 +100,22 @@ def trajectory_points(mechanism: Mechanism) -> tuple[str, ...]:
 
 def trajectory_of(
     equations: EquationsOfMotion,
-    carried: Sequence[str],
     steps: MotionSteps,
     times: Array,
     states: Array,
     scheme: str,
     executor: str,
+    carried: Sequence[str] = (),
 ) -> Trajectory:
     """Everything that a motion shows at instants, from its states.
 
     Parameters
     ----------
-    carried : names of what states hold, in order
     steps : of which the first is the start, from which energies and works count
     times : (n) [s]
     states : (carried, n), as `MotionIntegration.states_at` gives them
     scheme, executor : by which the steps were taken
+    carried : names of what states hold, in order; what is followed alone if left out
     """
     count, names, tree = equations.size, MotionNames.of(equations), equations.tree
     mechanism = tree.mechanism
@@ -123,12 +123,16 @@ def trajectory_of(
     n = len(times)
     with np.errstate(all="ignore"):
         values = tree.values(ARRAYS, q)
-        fixed = dict(zip(carried, states, strict=True))
-        modes = modes_of(names, fixed.__getitem__)
+        fixed = dict(zip(carried, states, strict=False))
+        modes = modes_of(names, fixed.__getitem__) if carried else None
         held = list(states[names.part(names.states)])
         terms = equations.terms(ARRAYS, values, w, times, modes, held)
-        flags = {row: fixed[name] > 0.5 for row, name in zip(equations.flagged, names.flags, strict=True)}
-        a, forces, _flags = equations.accelerations(ARRAYS, terms, flags if equations.contacts else None)
+        flags = {
+            row: fixed[name] > 0.5
+            for row, name in zip(equations.flagged, names.flags, strict=True)
+            if modes is not None
+        }
+        a, forces, _flags = equations.accelerations(ARRAYS, terms, flags or None)
         jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, a, strict=True)]
         state = equations.state(ARRAYS, values, jets, times)
         kinetic = _row(equations.kinetic_energy(state), n)

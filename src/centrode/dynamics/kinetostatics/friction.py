@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics
 from centrode.dynamics.kinetostatics.joints import JointSide, column, side_forces
+from centrode.dynamics.kinetostatics.radial_forces import radial_force_on, tooth_senses
 from centrode.dynamics.load_coordinates import Slide, Turn, place_of
 from centrode.dynamics.loads import REST, AppliedLoad, Constant, Friction, LoadTerm, MassesAndLoads, Square
 from centrode.dynamics.reduction import Reducer
@@ -546,21 +547,28 @@ def _sizes(contact: Contact, state: State) -> list[Size]:
 def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw:
     samples, count = len(senses), len(sizes)
     gain = np.empty((samples, count, 2, count))
-    # reactions are linear in the sizes: those of each unit size, without any load, are the gains
+    # reactions are linear in the sizes: those of each unit size, without any load, are the gains; radial forces of
+    # teeth are as long as friction does not turn the tangential ones round
+    teeth = tooth_senses(free)
     for k, size in enumerate(sizes):
-        gain[..., k] = _size_measures(free.system.forces(size.pulls), sizes, samples)
+        gain[..., k] = _size_measures(free.system.forces(size.pulls), sizes, teeth, samples)
     # friction acts against the motion
     factors = -senses * np.array([size.factor for size in sizes])
     rules = np.array([size.rule for size in sizes], dtype=np.int8)
-    return FrictionLaw(factors, _size_measures(free, sizes, samples), gain, rules)
+    return FrictionLaw(factors, _size_measures(free, sizes, teeth, samples), gain, rules)
 
 
-def _size_measures(forces: ForceSystem, sizes: Sequence[Size], samples: int) -> Array:
-    """The two numbers (n, sizes, 2) that each size depends on."""
+def _size_measures(
+    forces: ForceSystem, sizes: Sequence[Size], teeth: Mapping[str, Array], samples: int
+) -> Array:
+    """The two numbers (n, sizes, 2) that each size depends on; `teeth` are the senses of tangential forces."""
     measures = np.zeros((samples, len(sizes), 2))
     for k, size in enumerate(sizes):
         for part, value in enumerate(_contact_forces(forces, size.contact)):
             measures[:, k, part] = column(value, samples)
+        if teeth and isinstance(size.contact, HingeBearing):
+            side = JointSide(size.contact.point, size.contact.link)
+            measures[:, k] += radial_force_on(forces, side, teeth)
     return measures
 
 

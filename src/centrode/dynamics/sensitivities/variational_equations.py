@@ -22,7 +22,7 @@ from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.integration import ATTEMPTS, MOST_STEPS
 from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS
-from centrode.errors import MotionError
+from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
 from centrode.numerics.expressions import as_node, variable
 from centrode.numerics.graphs import directional_derivatives
@@ -116,8 +116,16 @@ class VariationalEquations:
         times : (n) [s] that grow
         tolerance : of the error of a step
 
-        Raises MotionError where the motion does not get to the last instant.
+        Raises
+        ------
+        MotionError
+            The motion does not get to the last instant.
+        NotComputedYet
+            Events change it at once.
         """
+        if self.free.equations.contacts or self.free.equations.controls:
+            what = _("a motion with stops, dry friction, clamps or controllers has no derivatives here")
+            raise NotComputedYet("", what, _("remove them, or compare motions whose numbers differ a little"))
         integration, problem = self.free.integration, self.problem
         names, base = integration.names, integration.problem
         rate = integration.rate(start, float(times[-1]))

@@ -57,10 +57,10 @@ OCCASIONS = ("crossing", "near miss", "doubtful", *KINDS[2:])
 @kept_by_mechanism(32)
 def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMotion:
     """The equations of a mechanism with drives that keep their laws, and a moment or force along the first drive."""
-    return free_motion_of(mechanism.with_drives_held(), keeps, _efforts(mechanism, law))
+    return free_motion_of(mechanism.with_drives_held(), keeps, driving_efforts(mechanism, law))
 
 
-def _efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
+def driving_efforts(mechanism: Mechanism, law: str) -> tuple[DriveEffort, ...]:
     """What drives: a force by a formula along the first drive, and motors of drives."""
     motors = tuple(
         _effort_of(mechanism, [drive.id for drive in mechanism.drives].index(motor.drive), motor.law)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -16,11 +18,14 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.render.drawing import signs
 from centrode.render.drawing.style import GROUND, INK, MUTED, PALETTE
-from centrode.scenes.driving_cams import PLACES, DrivingCam
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
+    from centrode.scenes.driving_cams import DrivingCam
     from centrode.scenes.places import LinkageScene, View
+
+# what computes cams is not loaded for a linkage without any
+_driving_cams = functools.partial(importlib.import_module, "centrode.scenes.driving_cams")
 
 
 def draw_cams(axes: Axes, scene: LinkageScene, sample: int) -> None:
@@ -89,8 +94,9 @@ class FollowerDrawing:
     """
 
     def __init__(self, body: FollowerCam, angles: Array, factor: float) -> None:
-        self.cam = DrivingCam.alone(body, angles, factor)
-        phi = np.linspace(0.0, body.edges[-1], PLACES)
+        driving = _driving_cams()
+        self.cam: DrivingCam = driving.DrivingCam.alone(body, angles, factor)
+        phi = np.linspace(0.0, body.edges[-1], driving.PLACES)
         found = body.contact(phi)
         self.path = found.centre
         self.far = factor * float(np.linalg.norm(found.place, axis=1).max())

@@ -90,9 +90,9 @@ class Pen:
     marker: str = ""
 
 
-def halo() -> list[AbstractPathEffect]:
-    """A white edge about the letters of a name, so that it can be read over a line."""
-    return [withStroke(linewidth=2.0, foreground="white")]
+def halo(ground: Any = "white") -> list[AbstractPathEffect]:
+    """An edge of the ground's colour about the letters of a name, so that it can be read over a line."""
+    return [withStroke(linewidth=2.0, foreground=ground)]
 
 
 @functools.cache
@@ -173,6 +173,8 @@ def recolour(artist: Artist) -> None:
         _recolour_line(artist)
     elif isinstance(artist, Text):
         artist.set_color(_light(artist.get_color()))
+        if artist.get_path_effects():
+            artist.set_path_effects(halo(_light("white")))
     elif isinstance(artist, Patch):
         _recolour_patch(artist)
     elif isinstance(artist, Collection):

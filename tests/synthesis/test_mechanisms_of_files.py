@@ -1,0 +1,138 @@
+"""Mechanisms of files: Hoeken's linkage with a slotted lever, by path, function, and stroke with a dwell.
+
+K. Hoeken's straight-line linkage has the lengths 1 : 2 : 2.5 and the point at 5 (Hoeken, Steigerung der
+Wirtschaftlichkeit durch zweckmaessige Anwendung der Getriebelehre, Werkstattstechnik 1930); a lever that slides over
+the point, hinged on the straight line, dwells while the crank turns by half a turn.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.synthesis import mechanism_synthesis
+
+PUBLISHED = {
+    "links.AB.points.B.x": 2.5,
+    "links.AB.points.P.x": 5.0,
+    "links.DB.length": 2.5,
+    "frame.points.D.x": 2.0,
+}
+RANGES = {
+    "links.AB.points.B.x": [1.8, 3.4], "links.AB.points.P.x": [3.5, 7], "links.DB.length": [1.8, 3.4],
+    "frame.points.D.x": [1.5, 2.8],
+}  # fmt: skip
+
+
+def tables(**numbers: float) -> dict[str, Any]:
+    """The linkage; by default with lengths that draw no straight line."""
+    given = {"b": 2.8, "p": 4.6, "c": 2.9, "d": 2.3, "f": 4.2, "lever": -0.0473, **numbers}
+    return {
+        "frame": {"points": {"O": [0, 0], "D": [given["d"], 0], "F": [9, given["f"]]}},
+        "links": {
+            "OA": {"length": 1.0},
+            "AB": {"points": {"A": [0, 0], "B": [given["b"], 0], "P": [given["p"], 0]}},
+            "DB": {"length": given["c"]},
+            "lever": {"points": {"F": [0, 0], "G": [3, 0]}, "angle": given["lever"]},
+        },
+        "guides": [{"point": "P", "on": "lever", "through": "F", "direction": [1, 0]}],
+        "drives": [{"link": "OA", "start": 0.0, "speed": 1.0}],
+        "assembly": {"sides": {"B": "left"}},
+    }
+
+
+@pytest.fixture(scope="module")
+def published() -> Any:
+    """The motion of the published linkage."""
+    there = tables(b=2.5, p=5.0, c=2.5, d=2.0, f=4.0, lever=-0.1277)
+    return ct.motion(ct.Mechanism(**there), 73)
+
+
+@pytest.fixture(autouse=True)
+def few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mechanism_synthesis, "STARTS", 120)
+    monkeypatch.setattr(mechanism_synthesis, "REFINED", 6)
+
+
+def synthesise(**wanted: Any) -> Any:
+    return ct.synthesise({**tables(), "synthesis": {"free": RANGES, **wanted}})
+
+
+@pytest.mark.parametrize("timing", ["free", "given"])
+def test_path_of_a_six_bar(published, timing: str) -> None:
+    places = published.position.sel(point="P").to_numpy()[2:70:5]
+    rows = [[float(x), float(y)] for x, y in places]
+    if timing == "given":
+        rows = [
+            [*row, float(z)] for row, z in zip(rows, published.drive_value.to_numpy()[2:70:5, 0], strict=True)
+        ]
+    best = synthesise(kind="path", point="P", targets=rows, timing=timing).answers[0]
+    for path, value in PUBLISHED.items():
+        assert ct.value_at(best.mechanism, path) == pytest.approx(value, rel=1e-7)
+    met = ct.motion(best.mechanism, at=list(best.drive)).position.sel(point="P").to_numpy()
+    # between samples the curve is a cubic: h^4/384 of a fourth derivative of some 50, with h = 2 deg
+    assert np.abs(met - places).max() < 1e-6
+    assert best.defects.none
+
+
+def test_function_of_a_six_bar(published) -> None:
+    """The lever follows the crank: every fifth place of the published motion is met."""
+    angles = np.unwrap(published.angle.sel(link="lever").to_numpy())[2:70:5]
+    rows = np.column_stack([published.drive_value.to_numpy()[2:70:5, 0], angles]).tolist()
+    free = {**RANGES, "frame.points.F.y": [3.5, 4.6]}
+    best = synthesise(kind="function", of="angle.lever", targets=rows, free=free).answers[0]
+    at = ct.motion(best.mechanism, at=[row[0] for row in rows]).angle.sel(link="lever").to_numpy()
+    assert np.ptp(np.unwrap(at) - angles) < 1e-8
+
+
+def test_a_dwell_as_long_as_that_of_the_published_linkage(published) -> None:
+    angle = np.unwrap(published.angle.sel(link="lever").to_numpy())
+    drive = published.drive_value.to_numpy()[:, 0]
+    half = (drive >= math.radians(110)) & (drive <= math.radians(250))
+    wanted = {"of": "angle.lever", "swing": float(np.ptp(angle)), "dwell": {"range": ["110 deg", "250 deg"]}}
+    free = {**RANGES, "frame.points.F.y": [3.5, 4.6]}
+    best = synthesise(kind="strokes", free=free, answers=2, **wanted).answers[0]
+    own = np.unwrap(ct.motion(best.mechanism, 721).angle.sel(link="lever").to_numpy())
+    own_drive = np.linspace(0, 2 * math.pi, 721)
+    dwell = own[(own_drive >= math.radians(110)) & (own_drive <= math.radians(250))]
+    assert np.ptp(dwell) <= 1.01 * np.ptp(angle[half])
+    assert np.ptp(own) == pytest.approx(np.ptp(angle), rel=2e-2)
+    assert best.numbers["dwell_spread"][0] == pytest.approx(np.ptp(dwell), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "said"),
+    [
+        (
+            {"kind": "path", "targets": [[0, 0], [1, 0], [2, 1]], "free": {}},
+            "no number of the mechanism is free",
+        ),
+        ({"kind": "path", "targets": [[0, 0], [1, 0], [2, 1]], "point": "X"}, 'no link has the point "X"'),
+        (
+            {"kind": "path", "targets": [[0, 0], [1, 0], [2, 1]], "free": {"links.X.length": [1, 2]}},
+            "links.X.length",
+        ),
+        ({"kind": "strokes"}, "neither a stroke nor a dwell is given"),
+        (
+            {"kind": "motion", "targets": [[0, 0, 0], [1, 1, 1]]},
+            "poses are synthesised for four-bar linkages",
+        ),
+        ({"kind": "strokes", "dwell": {"range": ["10 deg", "380 deg"]}}, "less than a turn apart"),
+    ],
+)
+def test_refusals(wanted, said: str) -> None:
+    with pytest.raises(ct.InputError) as refusal:
+        synthesise(**wanted)
+    assert said in str(refusal.value)
+
+
+def test_what_no_mechanism_keeps_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mechanism_synthesis, "STARTS", 10)
+    monkeypatch.setattr(mechanism_synthesis, "REFINED", 1)
+    targets = [[4.0, 4.0], [3.0, 4.0], [1.0, 4.0]]
+    with pytest.raises(ct.MotionError, match="the nearest breaks size"):
+        synthesise(kind="path", targets=targets, constraints={"size": [3, 3]})

@@ -1,0 +1,1 @@
+"""Random requests of a synthesis against oracles of their own."""
