@@ -305,7 +305,7 @@ def _diagram(results: EquilibriumResults, k: int) -> CurveDiagram:
     traces = []
     for word, kept in ((Sentence("stable"), stable), (Sentence("unstable"), ~stable)):
         # a line ends where its neighbour is of the other kind
-        traces.append(Trace(word, *(_with_gaps(one, kept, breaks) for one in (x, y))))
+        traces.append(Trace(word, _with_gaps(x, kept, breaks), _with_gaps(y, kept, breaks)))
     marks = np.column_stack([found["critical_value"].values, found["critical_coordinate"].values[:, k]])
     if len(marks):
         traces.append(Trace(Sentence("critical values"), np.full(1, np.nan), np.full(1, np.nan), marks=marks))

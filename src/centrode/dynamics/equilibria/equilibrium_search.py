@@ -245,16 +245,19 @@ def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
 def _distinct(loaded: LoadedMechanism, places: Array) -> Array:
     """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first."""
     begin = loaded.position.coordinates
-    if repeats_with_position(loaded):
+    repeats = repeats_with_position(loaded)
+    if repeats:
         angles = np.array([one.kind == "angle" for one in loaded.coordinates])
         turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
         places = np.where(angles, places - turns, places)
-        apart = lambda one: same_position(loaded, places, one)  # noqa: E731
-    else:
-        apart = lambda one: np.max(np.abs((places - one) / loaded.units), axis=1)  # noqa: E731
-    order = np.argsort(apart(begin), kind="stable") if len(places) else []
+
+    def apart(one: Array) -> Array:
+        if repeats:
+            return same_position(loaded, places, one)
+        return np.asarray(np.max(np.abs((places - one) / loaded.units), axis=1))
+
     kept: list[int] = []
-    for k in order:
+    for k in np.argsort(apart(begin), kind="stable") if len(places) else ():
         if not kept or np.min(apart(places[k])[kept]) > SAME:
             kept.append(int(k))
     return np.asarray(places[kept])

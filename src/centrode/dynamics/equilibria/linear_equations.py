@@ -221,7 +221,8 @@ class LoadedMechanism:
         arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
         for name, x in found.items():
             kind, *places = name.split()
-            arrays[kind][(slice(None), *map(int, places))] = x
+            at: tuple[Any, ...] = (slice(None), *map(int, places))
+            arrays[kind][at] = x
         return LinearEquations(**arrays)
 
     def reactions(self, found: LinearEquations) -> Array:
@@ -331,8 +332,8 @@ class LoadedMechanism:
         values |= {f"coordinate {k}": place[:, k] for k in range(self.size)}
         values |= {f"speed {k}": 0.0 for k in range(self.size)}
         found = evaluate(self._closure_graph, values)
-        left = np.zeros((len(place), self.equations.equations))
-        rows = np.zeros((len(place), self.equations.equations, self.size))
+        left: Any = np.zeros((len(place), self.equations.equations))
+        rows: Any = np.zeros((len(place), self.equations.equations, self.size))
         for name, x in found.items():
             kind, *places = name.split()
             (left if kind == "closures" else rows)[(slice(None), *map(int, places))] = x

@@ -74,7 +74,7 @@ class SmallMotions:
         kept = [k for k, s in enumerate(values) if s.imag >= -1e-14 * scale]
         # of a pair whose imaginary parts are rounding both are real
         order = sorted(
-            kept, key=lambda k: (round(abs(values[k].imag) / max(scale, 1e-300), 12), values[k].real)
+            kept, key=lambda k: (round(abs(float(values[k].imag)) / max(scale, 1e-300), 12), values[k].real)
         )
         return values[order], vectors[:count, order].T
 

@@ -90,7 +90,7 @@ def motion_gradients(
 
 def _prepared(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
     changed = with_value(described, path, value)
-    assert isinstance(changed, Mechanism) and changed.simulation is not None
+    assert changed.simulation is not None
     setting = multibody_setting(changed, changed.simulation)
     return setting.free, setting.free.initial(setting.speeds, setting.start)
 
