@@ -28,11 +28,13 @@ def real_dyads(places: list[list[float]], angles: list[float]) -> list[tuple[com
             for i in range(4):
                 for j in range(i):
                     det = matrix[i][0] * matrix[j][1] - matrix[i][1] * matrix[j][0]
-                    if best is None or abs(det) > abs(best[0]):
+                    # two rows that depend on each other, as at a pole of two poses, give no centre
+                    if abs(det) > (0 if best is None else abs(best[0])):
                         x = (-matrix[i][2] * matrix[j][1] + matrix[i][1] * matrix[j][2]) / det
                         y = (-matrix[i][0] * matrix[j][2] + matrix[i][2] * matrix[j][0]) / det
                         best = (det, x, y)
-            assert best is not None
+            if best is None:
+                continue
             _det, x, y = best
             misses = [abs(row[0] * x + row[1] * y + row[2]) for row in matrix]
             if max(misses) < mpf(10) ** -18 * (1 + abs(u) + abs(v)) * (1 + abs(x) + abs(y)):
