@@ -414,8 +414,8 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
             fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     for name in names.states:
         # a state has no unit to be compared with: its own size, or one
-        reach = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
-        parts = [variable(prefix + name) / reach for prefix in (OF_FIFTH, OF_THIRD)]
+        greatest = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
+        parts = [variable(prefix + name) / greatest for prefix in (OF_FIFTH, OF_THIRD)]
         fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     together = fifth + 0.01 * third
     count = 2 * equations.size + len(names.states)
