@@ -65,6 +65,11 @@ class MeasuredPart(DescriptionPart):
         return wrong
 
     @property
+    def label(self) -> str:
+        """What results call it."""
+        return self.name or self.place
+
+    @property
     def place(self) -> str:
         """What it acts on: a link, a guide, or two points."""
         return self.link or self.guide or self.point or "-".join(self.points or ())

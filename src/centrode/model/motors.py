@@ -79,7 +79,8 @@ class DriveMotor(Motor):
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given: each kind has its own."""
-        found = DescriptionPart.key_problems.__func__(cls, given)  # type: ignore[attr-defined]
+        # the rules of a part, not those of the motor of a simulation, which has fewer kinds
+        found: list[Problem] = DescriptionPart.key_problems.__func__(cls, given)  # type: ignore[attr-defined]
         kind = given.get("kind")
         if found or kind not in _NEEDED:
             return found

@@ -80,11 +80,9 @@ def free_loads_of(
         for term in load.efforts:
             if has_sense(term):
                 continue
-            if is_dry(term):
-                term = _smooth_part(term, described[load.label])
-                if term is None:
-                    continue
-            found.append(LoadAlong(load.label, _without_branches(load, term)))
+            smooth = _smooth_part(term, described[load.label]) if is_dry(term) else term
+            if smooth is not None:
+                found.append(LoadAlong(load.label, _without_branches(load, smooth)))
     for effort in efforts:
         drive = next(one for one in mechanism.drives if one.id == effort.drive)
         law = DriveLaw(effort.law, effort.uses - {"q"})

@@ -121,7 +121,7 @@ class MotionIntegration:
     def with_numbers(self, equations: EquationsOfMotion) -> MotionIntegration:
         """The same problem for equations of the same structure with other numbers."""
         other = MotionIntegration(equations)
-        shared = ("variables", "names", "problem", "_half_circles")
+        shared: tuple[str, ...] = ("variables", "names", "problem", "_half_circles")
         shared += ("contact_function", "closing_function") if self.equations.has_events else ()
         for name in shared:
             other.__dict__[name] = getattr(self, name)

@@ -108,7 +108,7 @@ def _map_load(load: LoadAlong, function: Function) -> LoadAlong:
     return replace(load, term=replace(term, coordinate=coordinate, amount=_map_law(term.amount, function)))
 
 
-def _map_law(law: LoadLaw | BrokenLine, function: Function) -> Any:
+def _map_law(law: LoadLaw | BrokenLine | SmoothFriction, function: Function) -> Any:
     match law:
         case BrokenLine():
             return law.map_numbers(function)

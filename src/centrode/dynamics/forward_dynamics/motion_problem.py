@@ -333,8 +333,9 @@ def _guards(
             contact, mode = equations.contacts[guard.number], modes[guard.number]
             one = terms.measures[guard.number]
             angular = isinstance(contact.coordinate, Turn)
-            unit = 1.0 if angular else variable(LENGTH)
-            force, weak = 0.0, 0.0
+            unit: Number = 1.0 if angular else variable(LENGTH)
+            force: Number = 0.0
+            weak: Number = 0.0
             if guard.number in rows:
                 row = rows[guard.number]
                 force = forces.get(row, 0.0)
@@ -402,7 +403,9 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
     for k, coordinate in enumerate(equations.tree.coordinates):
         name, speed = names.coordinates[k], names.speeds[k]
         unit = 1.0 if coordinate.kind == "angle" else variable(LENGTH)
-        reach = unit * FLOOR * variable(RATE) + m.max(m.abs(variable(BEFORE + speed)), m.abs(variable(speed)))
+        reach: Number = unit * FLOOR * variable(RATE) + m.max(
+            m.abs(variable(BEFORE + speed)), m.abs(variable(speed))
+        )
         for one, scale in ((name, unit), (speed, reach)):
             parts = [variable(prefix + one) for prefix in (OF_FIFTH, OF_THIRD)]
             if not isinstance(scale, float):
@@ -411,8 +414,8 @@ def _error(equations: EquationsOfMotion, names: MotionNames) -> Number:
             fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     for name in names.states:
         # a state has no unit to be compared with: its own size, or one
-        reach = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
-        parts = [variable(prefix + name) / reach for prefix in (OF_FIFTH, OF_THIRD)]
+        greatest = m.max(m.max(m.abs(variable(BEFORE + name)), m.abs(variable(name))), 1.0)
+        parts = [variable(prefix + name) / greatest for prefix in (OF_FIFTH, OF_THIRD)]
         fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
     together = fifth + 0.01 * third
     count = 2 * equations.size + len(names.states)

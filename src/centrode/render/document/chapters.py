@@ -152,7 +152,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Paragraph(text, clause):
             spelled = spelling.text(text)
             return blocks.ParagraphBlock(f"{spelled[:1].upper()}{spelled[1:]}." if clause else spelled)
-        case MotionPlayer(mechanism, motion, by_time, marks):
+        case MotionPlayer(mechanism, motion, by_time, marks=marks):
             return moving_of(mechanism, motion, by_time, [(spelling.text(name), at) for name, at in marks])
         case Formula(lines, name):
             return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines), name)
