@@ -22,6 +22,7 @@ from centrode.gears.profiles import wheel_outline
 from centrode.render.drawing.style import PALETTE
 from centrode.render.figures.linkages import draw, initial_sample, read_scene
 from centrode.scenes.sphere import Globe
+from centrode.sheets.outlines import DrawnLines
 from centrode.views.gear_train import wheels_drawing
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -77,7 +78,7 @@ def picture_of_gears(name: str) -> bytes:
         for piece in drawing.pieces:
             axes.plot(*piece.places.T, color=PALETTE[piece.layer != "profile"], linewidth=1.4)
         for shape in drawing.shapes:
-            for line in shape.lines:
+            for line in shape.lines if isinstance(shape, DrawnLines) else ():
                 axes.plot(*line.T, color=PATH, linewidth=1.0)
         axes.set_aspect("equal")
     axes.set_axis_off()

@@ -30,7 +30,7 @@ _options, _writing, _outline = (
 )
 
 
-@click.command(help=mark("Write everything about a mechanism, a cam or gears as one document."))
+@click.command(help=mark("Write all about a mechanism, a cam or gears as a document."))
 @click.argument(
     "description",
     metavar=mark("FILE_OR_EXAMPLE"),

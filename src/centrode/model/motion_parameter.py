@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 from centrode.errors import InputError
+from centrode.laws import Law, Uniform
 from centrode.locale import _
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, read_quantity
@@ -145,6 +146,11 @@ class DriveCoordinate(MotionVariable):
     def turns(self) -> bool:
         """Whether a full turn of the value brings the driven link back: only the angle of a link does that."""
         return self.driven == "angle"
+
+
+def constant_speed_of(law: Law) -> float | None:
+    """Speed [rad/s or m/s] of a drive that keeps a constant one; None by any other law."""
+    return law.speed if isinstance(law, Uniform) else None
 
 
 @dataclass(frozen=True)

@@ -388,7 +388,7 @@ def _check_strokes(wanted: Synthesis) -> None:
         return
     if wanted.dwell is not None:
         what = _("a dwell is that of a mechanism of a file")
-        raise Problem(what, _("describe its links, and leave out topology"), ("dwell",))
+        raise Problem(what, _("describe its links, and remove topology"), ("dwell",))
     if wanted.topology not in STROKE_TOPOLOGIES:
         what = _("strokes are synthesised for {names}").format(names=", ".join(STROKE_TOPOLOGIES))
         raise Problem(what, nearest(str(wanted.topology or ""), STROKE_TOPOLOGIES), ("topology",))

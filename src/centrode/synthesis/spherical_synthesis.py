@@ -472,11 +472,8 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
     steps = np.where(sense[:, None] > 0, forwards, -backwards)
     way = posed.crank[:, :1] + np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
     arcs = linkages[:, [CRANK, COUPLER, ROCKER]]
-    good = (
-        np.isfinite(linkages).all(axis=1)
-        & (arcs > LEAST_ARC).all(axis=1)
-        & (arcs < np.pi - LEAST_ARC).all(axis=1)
-    )
+    good: Booleans = np.all(np.isfinite(linkages), axis=1)
+    good &= np.all((arcs > LEAST_ARC) & (arcs < np.pi - LEAST_ARC), axis=1)
     turns: Booleans = np.all(spherical_crank_margins(linkages) > 1e-9, axis=1)
     with np.errstate(invalid="ignore"):
         clean = (posed.sides == posed.sides[:, :1]).all(axis=1) & (np.abs(way[:, -1] - way[:, 0]) < 2 * np.pi)

@@ -161,7 +161,7 @@ def _construct(mechanism: Mechanism, wanted: Synthesis) -> Construction | None:
         if len(link.coordinates) > 1
     ]
     turn = np.exp(1j * np.linspace(0.0, 2 * math.pi, 181))
-    frame = np.array(list(mechanism.frame.points.values()), dtype=np.float64) @ (1, 1j)
+    frame: Complex = np.array(list(mechanism.frame.points.values()), dtype=np.float64) @ np.array([1, 1j])
     fixed = dict(zip(mechanism.frame.points, frame.tolist(), strict=True))
     home, ends = fixed["O"], at[tip]
     none = np.empty(0, dtype=np.complex128)

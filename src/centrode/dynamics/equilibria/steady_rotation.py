@@ -19,8 +19,8 @@ from centrode.dynamics.equilibria.equilibrium_search import walked_positions
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import UNSTABLE, SmallMotions, small_motions
 from centrode.errors import MotionError
-from centrode.laws import Uniform
 from centrode.locale import _
+from centrode.model.motion_parameter import constant_speed_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -55,7 +55,8 @@ def steady_rotation(loaded: LoadedMechanism) -> SmallMotions:
 def _steady_states(loaded: LoadedMechanism) -> Iterator[tuple[Array, Array]]:
     """States of constant speeds from many positions: everything turns with the drive, or as little as can."""
     angles = np.array([one.kind == "angle" for one in loaded.coordinates])
-    speed = next(one.driven.law.speed for one in loaded.equations.kept if isinstance(one.driven.law, Uniform))
+    constant = (constant_speed_of(one.driven.law) for one in loaded.equations.kept)
+    speed = next(found for found in constant if found is not None)
     begin = loaded.at(loaded.position.coordinates[None])
     inertia = np.max(np.abs(begin.mass[0] * np.outer(loaded.units, loaded.units)), initial=0.0)
     heavy = float(inertia) * speed**2 + float(np.max(np.abs(begin.force * loaded.units), initial=0.0))

@@ -21,8 +21,8 @@ from centrode.dynamics.forward_dynamics.initial_position import residuals_and_ro
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
 from centrode.errors import MotionError
-from centrode.laws import Uniform
 from centrode.locale import _
+from centrode.model.motion_parameter import constant_speed_of
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.initial_value_problems import STEP, TIME
 from centrode.numerics.scans import evaluate
@@ -130,11 +130,12 @@ class _Search:
         """Time of a turn of the drives that keep their speeds; None without any."""
         speeds = []
         for kept in self.free.equations.kept:
-            if not isinstance(kept.law, Uniform) or kept.driven.drive.kind != "angle":
+            speed = constant_speed_of(kept.law)
+            if speed is None or kept.driven.drive.kind != "angle":
                 what = _("a regime is sought of drives that keep a constant speed")
                 raise MotionError("[simulation]", what, _("let them turn at constant speeds"))
-            if kept.law.speed:
-                speeds.append(abs(float(kept.law.speed)))
+            if speed:
+                speeds.append(abs(speed))
         if not speeds:
             return None
         slowest = min(speeds)
