@@ -506,7 +506,7 @@ FORCES = (
     Quantity("occasion_impulse", "S", "N s", mark("impulse of an impact")),
     Quantity("occasion_loss", "ΔT", "J", mark("energy lost by an impact")),
     Quantity(
-        "contact_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
+        "restraint_force", "R", "N", mark("force of a stop, a clamp or dry friction along its coordinate")
     ),
     Quantity("controller_output", "u", "N m", mark("output of a controller")),
     Quantity("contact_mode", "", "1", mark("whether a contact is closed, sticks or holds")),

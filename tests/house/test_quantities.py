@@ -94,7 +94,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
     simulated = ["inertia", "moment_of_friction", "power_of_drive", "power_of_loads", "work_of_friction"]
     simulated += ["work_of_other_loads", "kinetic_energy", "potential_energy", "energy_residual"]
-    simulated += [f"occasion_{name}" for name in ("time", "value", "kind")]
+    simulated += [f"occasion_{name}" for name in ("time", "value", "kind", "part", "impulse", "loss")]
+    simulated += ["restraint_force", "contact_mode", "controller_output"]
     known |= set(reduced) | set(steady) | set(simulated) | set(reactions)
     known |= {"shaking_force", "shaking_force_size", "shaking_moment", "inertia_on_drive", "order"}
     known |= {

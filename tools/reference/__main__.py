@@ -16,7 +16,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands.page,
     **{f"reference/{name}.md": partial(commands.page_of, name) for name in commands.PAGES},
     **{f"reference/{name}.md": partial(str, text) for name, text in face.pages().items()},
-    "reference/grammar.md": grammar.mechanisms,
+    **{f"reference/{name}.md": partial(str, text) for name, text in grammar.mechanisms().items()},
     "reference/cam-grammar.md": grammar.cams,
     "validation.md": validation.page,
     "gallery.md": gallery.page,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 from centrode.model.schema import cam_schema, mechanism_schema
@@ -16,6 +17,8 @@ Files are TOML. A number is in SI (m, kg, s, rad, N); a text has a unit: `"28.6 
 refused.
 """
 FILES = {"Cam": "A cam from a curvature law", "PlateCam": "A plate cam under its follower"}
+FIRST_OF_LOADS = "Load"
+"""Part with which the second page of linkages begins."""
 NAME = 40
 """Letters of the longest name."""
 WORDS = {
@@ -23,10 +26,18 @@ WORDS = {
 }  # fmt: skip
 
 
-def mechanisms() -> str:
-    """The page of linkages as Markdown."""
-    head = HEAD.format(things="mechanisms", meaning="[the description](../description.md)")
-    return _page(head, mechanism_schema())
+def mechanisms() -> dict[str, str]:
+    """The two pages of linkages as Markdown: what moves; loads, machines and what is wanted of them."""
+    schema = mechanism_schema()
+    names = list(schema["$defs"])
+    first = names.index(FIRST_OF_LOADS)
+    shares = {"grammar": names[:first], "grammar-of-loads": names[first:]}
+    meaning = "[the description](../description.md)"
+    heads = {
+        "grammar": HEAD.format(things="mechanisms", meaning=meaning) + "\n## The file\n\n" + _table(schema),
+        "grammar-of-loads": HEAD.format(things="loads, machines and studies", meaning=meaning),
+    }
+    return {page: _page(heads[page], schema, parts, page, shares) for page, parts in shares.items()}
 
 
 def cams() -> str:
@@ -40,9 +51,13 @@ def cams() -> str:
     return "\n".join([head, *tables, *(_part(name, inner, schema) for name, inner in parts.items())])
 
 
-def _page(head: str, schema: Schema) -> str:
-    parts = [_part(name, inner, schema) for name, inner in schema["$defs"].items()]
-    return "\n".join([head, "## The file\n", _table(schema), *parts])
+def _page(head: str, schema: Schema, names: list[str], page: str, shares: Mapping[str, list[str]]) -> str:
+    """A page with some of the parts; links to parts of another page lead there."""
+    text = "\n".join([head, *(_part(name, schema["$defs"][name], schema) for name in names)])
+    for other, parts in shares.items():
+        for name in parts if other != page else ():
+            text = text.replace(f"](#{name.lower()})", f"]({other}.md#{name.lower()})")
+    return text
 
 
 def _part(name: str, inner: Schema, whole: Schema) -> str:

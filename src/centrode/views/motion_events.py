@@ -72,7 +72,7 @@ def event_facts(run: xr.Dataset) -> Iterator[Fact]:
 def _unit_of_impulse(run: xr.Dataset, part: str) -> str:
     """Unit of the impulses of a part: that of its force times that of time."""
     names = [str(name) for name in run["contact"].values] if "contact" in run.coords else []
-    units = str(run["contact_force"].attrs["units"]).split(", ") if names else ["N"]
+    units = str(run["restraint_force"].attrs["units"]).split(", ") if names else ["N"]
     unit = units[names.index(part) if part in names and len(units) > 1 else 0]
     return f"{unit} s"
 

@@ -99,7 +99,7 @@ IN_CSV = (
     "joint_force",
     "guide_force",
     "guide_moment",
-    "contact_force",
+    "restraint_force",
     "contact_mode",
 )
 COORDINATES = {

@@ -90,7 +90,7 @@ def test_a_slider_crank_at_an_end_stop_bounces_at_the_instants_of_the_energy_int
     assert abs(run.occasion_time.values[rest] - aitken) < 1e-8
     assert abs(float(run.drive_value[-1, 0]) - 0.55978664859225159) < 1e-12
     assert run.attrs["worst_energy_residual"] < 1e-10
-    assert np.all(run.contact_force.values[run.contact_mode.values != 0] < 0.0)
+    assert np.all(run.restraint_force.values[run.contact_mode.values != 0] < 0.0)
 
 
 def test_a_double_pendulum_at_a_wall_jumps_by_the_mass_matrix():
@@ -230,7 +230,7 @@ def test_a_clamp_lets_go_at_its_time_and_at_an_event():
     )
     run = simulated(clamped, 1.5)
     assert abs(float(run.generalised_coordinate[-1, 0]) - 0.5 * 2 * 1.0) < 1e-12
-    assert abs(float(run.contact_force[0, 0]) + 4.0) < 1e-12
+    assert abs(float(run.restraint_force[0, 0]) + 4.0) < 1e-12
     waits = sledge(
         loads=[{"kind": "force", "guide": "P", "value": 4}],
         clamps=[{"guide": "P", "until": "go"}],

@@ -448,12 +448,12 @@ def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variab
     contacts = setting.free.equations.contacts
     if not contacts:
         return {}
-    force = vocabulary_variable("contact_force", ("sample", "contact"), course.contact_forces)
+    force = vocabulary_variable("restraint_force", ("sample", "contact"), course.contact_forces)
     angular = [isinstance(contact.coordinate, Turn) for contact in contacts]
     force[2]["units"] = _joined_units(["N m" if turns else "N" for turns in angular])
     modes = course.contact_modes.astype(np.int8)
     return {
-        "contact_force": force,
+        "restraint_force": force,
         "contact_mode": vocabulary_variable("contact_mode", ("sample", "contact"), modes),
     }
 
