@@ -49,6 +49,37 @@ B = "0.05 mm"
 swing = { formula = "range(angle_DB)", deviation = "0.1 deg" }
 rocker = "angle.DB"
 """
+DOOR = """title = "Door with a closer"
+[frame.points]
+O = [0, 0]
+[links.door]
+points = ["O", "A"]
+length = "0.9 m"
+mass = "25 kg"
+shape = "rod"
+angle = "80 deg"
+[[drives]]
+link = "door"
+[[loads]]
+kind = "spring"
+link = "door"
+stiffness = "8 N m/rad"
+free_angle = "-60 deg"
+[[loads]]
+kind = "friction"
+link = "door"
+value = "1.5 N m"
+static = "2 N m"
+viscous = "12 N m s/rad"
+[[stops]]
+name = "frame"
+link = "door"
+least = 0
+restitution = 0.3
+[simulation]
+duration = "10 s"
+"""
+"""A run with a stop and dry friction, as docs/how-to/door-closer.md has it."""
 DESCRIPTIONS = (
     "six-bar-press",
     "six-bar-press-run-up",
@@ -58,9 +89,16 @@ DESCRIPTIONS = (
     "crank-rocker",
     "planetary-gear-train",
     "spherical-four-bar",
+    "double-pendulum",
+    "door-closer",
 )
 """Each panel is shown of the first of these that has it."""
-AGAIN = {"spherical-four-bar": ("motion", "centres", "equations"), "planetary-gear-train": ("run",)}
+AGAIN = {
+    "spherical-four-bar": ("motion", "centres", "equations"),
+    "planetary-gear-train": ("run",),
+    "double-pendulum": ("equilibrium", "modes"),
+    "door-closer": ("simulate", "equilibrium"),
+}
 """Panels that look otherwise of some descriptions."""
 FITS = """() => {
   const panel = document.querySelector("#panel"), page = document.documentElement, said = [];
@@ -126,7 +164,9 @@ def packed(text: str) -> str:
 
 
 def description(name: str) -> str:
-    """The text of a built-in description; the crank-rocker has limits of its dimensions."""
+    """The text of a description; the crank-rocker has limits of its dimensions."""
+    if name == "door-closer":
+        return DOOR
     return example_text(name) + (TOLERANCES if name == "crank-rocker" else "")
 
 

@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.model.gear_pairs import GEAR_PAIRS
 from report.browser import browser
 
+from .bench import bench
 from .served import Served, served
 
 PAIR = {"module": "3 mm", "teeth": [12, 24], "shifts": [0.6, 0.36]}
@@ -75,6 +76,25 @@ def test_sliders_move_the_pair_in_its_contour(running: Any, server: Served) -> N
     page.wait_for_selector("#problems:has-text('whole number from 4 to 1000')")
     assert errors == []
     page.close()
+
+
+@pytest.mark.parametrize(("language", "title"), [("en", "Gear pair"), ("uk", "Зубчаста пара")])
+def test_the_workbench_leads_to_the_page(running: Any, server: Served, language: str, title: str) -> None:
+    with bench(running, server.address, language=language) as one:
+        one.page.click('[data-do="open"]')
+        one.page.fill("dialog .filter", title[3:].upper())
+        assert one.page.locator("dialog .template").all_inner_texts() == [title]
+        with one.page.context.expect_page() as opened:
+            one.page.click('[data-do="gears"]')
+        page = opened.value
+        page.set_default_timeout(120_000)
+        for _ in range(2):  # loaded again it needs no token in its address
+            page.wait_for_selector(f"#gears h1:has-text('{title}')")
+            page.wait_for_selector("#facts td:has-text('56')")
+            assert "token" not in page.url
+            page.reload()
+        page.close()
+        assert one.messages == []
 
 
 def test_the_page_is_given_with_the_token_alone(running: Any, server: Served) -> None:

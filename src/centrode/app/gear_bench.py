@@ -71,7 +71,7 @@ def _contour(described: GearPair) -> dict[str, Any]:
             {"label": _(CURVES[name].message), "blocks": name in BLOCKING, "lines": _lines(places)}
             if not CURVES[name].values
             else {
-                "label": render.plain_text(CURVES[name], described.display),
+                "label": render.screen_text(CURVES[name], described.display),
                 "blocks": name in BLOCKING,
                 "lines": _lines(places),
             }
@@ -102,7 +102,7 @@ def _pair(described: GearPair) -> dict[str, Any]:
     display = described.display
 
     def words(text: Any) -> str:
-        return str(render.plain_text(text, display))
+        return str(render.screen_text(text, display))
 
     pieces, circles, action = mesh_parts(results)
     said = [words(note) for note in made.notes]

@@ -144,6 +144,8 @@ WORDS: Mapping[str, str] = {
     "link_field": mark("Link to a description, also of PMKS+"),
     "import": mark("Import"),
     "templates": mark("Templates"),
+    "gears": mark("Gears"),
+    "gear_pair": mark("Gear pair"),
     "filter": mark("Filter the templates"),
     "file_name": mark("Name of the file"),
     "saved": mark("Saved as {name}."),

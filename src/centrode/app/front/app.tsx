@@ -10,8 +10,9 @@ import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
 import { SelectionCard, duplicateSelected, removeSelected } from "./selection_card";
 import { Stage } from "./stage";
-import { type Mode, SPHERE, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, refusal, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved, write } from "./state";
+import { type Mode, SPHERE, editing, fileName, follow, hello, keepNow, mode, motion, place, playing, problems, redo, said, scene, shows, snapping, speak, steps, tell, text, undo, unsaved, write } from "./state";
 import { TextPane } from "./text_pane";
+import { refusal } from "./token";
 import { language, say } from "./words";
 
 let stage: Stage | null = null;

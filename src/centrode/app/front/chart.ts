@@ -153,9 +153,14 @@ export class Chart {
       const at = x(between(abscissa, mark.at));
       make("line", { class: `mark ${mark.kind}`, x1: at, x2: at, y1: UPPER, y2: TALL - LOWER }, svg);
     }
-    for (const one of data.places ?? []) {
-      make("line", { class: "mark change", x1: x(one.at), x2: x(one.at), y1: UPPER, y2: TALL - LOWER }, svg);
-      make("text", { class: "axis", x: x(one.at), y: 13, "text-anchor": "middle" }, svg).textContent = one.label;
+    let free = LEFT + 4; // so far to the right the names reach: one that would cover another is told by its line alone
+    for (const one of [...(data.places ?? [])].sort((a, b) => x(a.at) - x(b.at))) {
+      const at = x(one.at), half = 3.4 * one.label.length, middle = Math.min(Math.max(at, LEFT + 4 + half), wide - half);
+      const line = make("line", { class: "mark change", x1: at, x2: at, y1: UPPER, y2: TALL - LOWER }, svg);
+      make("title", {}, line).textContent = one.label;
+      if (middle - half < free) continue;
+      make("text", { class: "axis", x: middle, y: 13, "text-anchor": "middle" }, svg).textContent = one.label;
+      free = middle + half + 6;
     }
     const [first, last] = [Math.min(low, high), Math.max(low, high)], vertical = steps(first, last, wide / 80, data.x.unit === "°");
     for (const tick of ticks(first, last, vertical)) {

@@ -6,7 +6,8 @@ import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
 import { unpack } from "./share";
-import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, options, refused, savedAs, scene, takeTyped, tell, text, token, unsaved } from "./state";
+import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, options, refused, savedAs, scene, takeTyped, tell, text, unsaved } from "./state";
+import { token } from "./token";
 import { language, say, sentences, spelled, unitText } from "./words";
 
 export const dialog = signal<"" | "open" | "save" | "export" | "photo" | "keys" | "discard">("");
@@ -116,6 +117,12 @@ function OpenWindow() {
               <ul>{shown.filter((one) => ((one as Template & { group?: string }).group ?? "") === group).map((one) => <li><button type="button" class="template" data-template={one.name} onClick={() => void example(one)}>{one.title || one.name}</button></li>)}</ul>
             </div>
           ))}
+          {`${say("gear_pair")} gears`.toLowerCase().includes(sought) && (
+            <div>
+              <h4>{say("gears")}</h4>
+              <ul><li><a class="template" data-do="gears" href={`/gears?${new URLSearchParams({ language: language.value, token })}`} target="_blank">{say("gear_pair")}</a></li></ul>
+            </div>
+          )}
         </div>
       </section>
     </Window>

@@ -1,4 +1,6 @@
 // The page of gears: two sliders move a pair of wheels within its blocking contour. Whatever is shown the server computes.
+import { refusal, token } from "./token";
+
 type Point = [number, number];
 interface Curve { label: string; blocks: boolean; lines: Point[][] }
 interface Contour { first: Point; second: Point; inside: string[]; curves: Curve[] }
@@ -8,15 +10,16 @@ interface Pair {
 }
 type Answer = Record<string, any> & { id: number; error?: { message: string; repair: string } };
 
-const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')!.content || "{}") as { token?: string; refused?: string };
-const wished = new URLSearchParams(location.search).get("language") ?? navigator.language.slice(0, 2);
+const kept = (): string | null => {
+  try {
+    return localStorage.getItem("centrode.language");
+  } catch {
+    return null; // a forbidden store
+  }
+};
+const wished = new URLSearchParams(location.search).get("language") ?? kept() ?? navigator.language.slice(0, 2);
 const language = ["en", "ru", "uk"].includes(wished) ? wished : "en";
 document.documentElement.lang = language;
-const token = given.token ?? sessionStorage.getItem("token") ?? "";
-if (given.token) {
-  sessionStorage.setItem("token", given.token);
-  history.replaceState(null, "", location.pathname);
-}
 
 // One request in flight; of those that wait the last of each kind is sent.
 class Line {
@@ -65,8 +68,8 @@ const path = (line: Point[]): string => line.map(([x, y], k) => `${k ? "L" : "M"
 
 async function begin(): Promise<void> {
   const root = document.getElementById("gears")!;
-  if (given.refused) {
-    root.textContent = given.refused;
+  if (refusal) {
+    root.textContent = refusal;
     return;
   }
   const problems = make("p", { id: "problems" });

@@ -5,29 +5,12 @@ import { History, type KeptStep, type TextFile } from "./history";
 import { type Motion, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
 import { pack, unpack } from "./share";
+import { token } from "./token";
 import { decimal, language, say, sentences, units, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
 
 const query = new URLSearchParams(location.search);
-// The server gives its token to the page once; the window keeps it for when it is loaded again, the address does not.
-const TOKEN = "centrode.token";
-const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')?.content || "{}") as { token?: string; refused?: string };
-const keptToken = (): string => {
-  try {
-    if (given.token) sessionStorage.setItem(TOKEN, given.token);
-    return given.token ?? sessionStorage.getItem(TOKEN) ?? "";
-  } catch {
-    return given.token ?? ""; // a forbidden store
-  }
-};
-export const token = keptToken();
-export const refusal = given.refused ?? ""; // what to do where the token is that of no server
-if (query.has("token") || query.has("code")) {
-  query.delete("token");
-  query.delete("code");
-  window.history.replaceState(null, "", `${location.pathname}${query.size ? `?${query}` : ""}${location.hash}`);
-}
 const scheme = location.protocol === "https:" ? "wss" : "ws";
 export const connection = new Connection(`${scheme}://${location.host}/socket?token=${encodeURIComponent(token)}`);
 
