@@ -31,12 +31,12 @@ from centrode.export.fmi_archive import (
     FmuVariable,
     archive_of,
     chosen_outputs,
-    derivative,
+    derivative_variable,
     engine,
-    entering,
-    leaving,
+    input_variable,
     numbers_text,
-    state,
+    output_variable,
+    state_variable,
 )
 from centrode.export.fmi_links import free_fmu
 from centrode.export.motion_program import MotionProgram, traced_program
@@ -142,16 +142,17 @@ class FmuProgram:
         if self.dynamic:
             word, effort = ("drive moment", "N m") if unit == "rad" else ("drive force", "N")
             moving = [
-                entering(word, FIRST_INPUT, effort),
-                state("drive", 0, rates[0], self.start),
-                state("drive speed", 1, rates[1], self.speed),
-                derivative("der(drive)", 0, rates[1]),
-                derivative("der(drive speed)", 1, rates[2]),
+                input_variable(word, FIRST_INPUT, effort),
+                state_variable("drive", 0, rates[0], self.start),
+                state_variable("drive speed", 1, rates[1], self.speed),
+                derivative_variable("der(drive)", 0, rates[1]),
+                derivative_variable("der(drive speed)", 1, rates[2]),
             ]
         else:
             given = (("drive", self.start), ("drive speed", self.speed), ("drive acceleration", 0.0))
             moving = [
-                entering(name, FIRST_INPUT + k, rates[k], start) for k, (name, start) in enumerate(given)
+                input_variable(name, FIRST_INPUT + k, rates[k], start)
+                for k, (name, start) in enumerate(given)
             ]
         fixed = {"causality": "parameter", "variability": "fixed", "initial": "exact"}
         dimensions = [
@@ -159,7 +160,7 @@ class FmuProgram:
             for k, (path, value) in enumerate(zip(program.paths, program.values, strict=True))
         ]
         results = (program.results[row] for row in self.outputs)
-        given_out = [leaving(result.name, k, result.unit) for k, result in enumerate(results)]
+        given_out = [output_variable(result.name, k, result.unit) for k, result in enumerate(results)]
         return (*moving, *dimensions, STATUS, *given_out)
 
     def archive(self, binaries: Mapping[str, bytes] | None = None) -> bytes:

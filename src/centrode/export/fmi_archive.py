@@ -34,20 +34,20 @@ class FmuVariable:
     kind: str = "Float64"
 
 
-def entering(name: str, reference: int, unit: str, start: float = 0.0) -> FmuVariable:
+def input_variable(name: str, reference: int, unit: str, start: float = 0.0) -> FmuVariable:
     """An input."""
     return FmuVariable(
         name, reference, unit, {"causality": "input", "variability": "continuous", "start": repr(start)}
     )
 
 
-def state(name: str, number: int, unit: str, start: float, causality: str = "output") -> FmuVariable:
+def state_variable(name: str, number: int, unit: str, start: float, causality: str = "output") -> FmuVariable:
     """A continuous state."""
     told = {"causality": causality, "variability": "continuous", "initial": "exact", "start": repr(start)}
     return FmuVariable(name, FIRST_STATE + number, unit, told)
 
 
-def derivative(name: str, number: int, unit: str) -> FmuVariable:
+def derivative_variable(name: str, number: int, unit: str) -> FmuVariable:
     """The derivative of a state."""
     told = {"causality": "local", "variability": "continuous", "initial": "calculated"}
     return FmuVariable(
@@ -55,7 +55,7 @@ def derivative(name: str, number: int, unit: str) -> FmuVariable:
     )
 
 
-def leaving(name: str, number: int, unit: str) -> FmuVariable:
+def output_variable(name: str, number: int, unit: str) -> FmuVariable:
     """An output."""
     told = {"causality": "output", "variability": "continuous", "initial": "calculated"}
     return FmuVariable(name, FIRST_OUTPUT + number, unit, told)

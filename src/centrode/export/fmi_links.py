@@ -26,12 +26,12 @@ from centrode.export.fmi_archive import (
     FmuVariable,
     archive_of,
     chosen_outputs,
-    derivative,
+    derivative_variable,
     engine,
-    entering,
-    leaving,
+    input_variable,
     numbers_text,
-    state,
+    output_variable,
+    state_variable,
 )
 from centrode.export.motion_program import program_name
 from centrode.locale import _
@@ -235,18 +235,20 @@ class LinksFmu:
         found: list[FmuVariable] = []
         for k, one in enumerate(self.mechanism.motion_parameter.drives):
             word, unit = ("moment", "N m") if one.unit == "rad" else ("force", "N")
-            found.append(entering(f"drive {word} {one.name}", FIRST_INPUT + k, unit))
+            found.append(input_variable(f"drive {word} {one.name}", FIRST_INPUT + k, unit))
         count, units = self.equations.size, [one.unit for one in self.equations.tree.coordinates]
         told = [
             *((f"coordinate {name}", unit) for name, unit in zip(self.coordinates, units, strict=True)),
             *((f"speed {name}", f"{unit}/s") for name, unit in zip(self.coordinates, units, strict=True)),
         ]
         for k, ((name, unit), start) in enumerate(zip(told, self._start_states, strict=True)):
-            found.append(state(name, k, unit, start, "local"))
+            found.append(state_variable(name, k, unit, start, "local"))
         for k, (name, _unit) in enumerate(told):
-            found.append(derivative(f"der({name})", k, f"{units[k % count]}/s{'^2' if k >= count else ''}"))
+            found.append(
+                derivative_variable(f"der({name})", k, f"{units[k % count]}/s{'^2' if k >= count else ''}")
+            )
         rows = enumerate(self.outputs.items())
-        return (*found, STATUS, *(leaving(name, k, unit) for k, (name, (unit, _number)) in rows))
+        return (*found, STATUS, *(output_variable(name, k, unit) for k, (name, (unit, _number)) in rows))
 
     def archive(self, binaries: Mapping[str, bytes] | None = None) -> bytes:
         """The FMU, with binaries by their places ("binaries/x86_64-linux/NAME.so")."""
