@@ -775,6 +775,27 @@ def test_a_link_of_another_program_is_opened(running: Any, server: Served) -> No
         assert one.messages == []
 
 
+BARS = b'<svg width="140mm" height="90mm" viewBox="0 -90 140 90"><path d="M0 0L30-40L120-90L140 0"/></svg>'
+
+
+def test_a_drawing_from_this_computer_is_opened(running: Any, server: Served) -> None:
+    """The linkage of a drawing stands there, and what was guessed is told; a damaged one is refused in words."""
+    with bench(running, server.address) as one:
+        before = one.text
+        one.page.click('[data-do="open"]')
+        field = one.page.locator('dialog input[type="file"]')
+        field.set_input_files({"name": "bars.svg", "mimeType": "image/svg+xml", "buffer": BARS[:-20]})
+        one.page.wait_for_selector("dialog .bad")
+        assert one.page.inner_text("dialog .bad") and one.text == before
+        one.gesture(
+            lambda: field.set_input_files({"name": "bars.svg", "mimeType": "image/svg+xml", "buffer": BARS})
+        )
+        one.motion()
+        assert sorted(one.names("link")) == ["AB", "BC", "CD"]
+        assert "# guessed: no layer is named ground" in one.text
+        assert one.messages == []
+
+
 def test_several_drives_follow_the_hand(running: Any, server: Served) -> None:
     """The tip of the arm goes where it is put, the drop writes both starts, and undo takes them back."""
     with bench(running, server.address) as one:

@@ -225,6 +225,7 @@ def test_mutated_messages_have_answers(tmp_path):
         {"do": "complete", "text": text, "line": 3, "column": 4},
         {"do": "open", "name": "a.toml"},
         {"do": "import", "url": "https://app.pmksplus.com/?0P.SS.K,0.101.."},
+        {"do": "import", "name": "bars.svg", "content": "PHN2Zz48bGluZSB4Mj0iOSIvPjwvc3ZnPg=="},
     ]
     longest = 0.0
     for _k in range(1000):

@@ -20,17 +20,20 @@ def test_a_drawing_is_printed_or_written_and_runs(centrode: Centrode, tmp_path: 
     drawing, file = tmp_path / "bars.svg", tmp_path / "bars.toml"
     drawing.write_text(BARS, encoding="utf-8")
     printed = centrode("import", drawing)
-    assert printed.code == 0 and printed.out.startswith("# read from bars.svg\n# guessed: ")
+    assert printed.code == 0, printed
+    assert printed.out.startswith("# read from bars.svg\n# guessed: ")
     assert "guessed: no layer is named ground" in printed.err
-    assert centrode("import", drawing, "--out", file).code == 0
+    written = centrode("import", drawing, "--out", file)
+    assert written.code == 0, written
     assert file.read_text(encoding="utf-8") == printed.out
     again = centrode("import", drawing, "--out", file)
-    assert (again.code, "exists already" in again.err) == (2, True)
-    assert centrode("check", file).code == 0
+    assert (again.code, "exists already" in again.err) == (2, True), again
+    checked = centrode("check", file)
+    assert checked.code == 0, checked
     scaled = centrode(
         "import", drawing, "--scale", "2", "--drive", "CD", "--join", "0.1 mm", "--out", file, "--force"
     )
-    assert scaled.code == 0
+    assert scaled.code == 0, scaled
     mechanism = ct.read_mechanism(file)
     assert mechanism.drives[0].link == "CD"
     assert abs(next(iter(mechanism.links.values())).length - 0.1) < 1e-12  # type: ignore[operator]

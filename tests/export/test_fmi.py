@@ -144,3 +144,109 @@ def test_what_is_no_fmu_is_refused_by_name(
 ) -> None:
     with pytest.raises(error, match=told):
         fmu_program(name, None, outputs)
+
+
+# The equations of all links.
+
+FREE = ("double-pendulum", "five-bar-pendulum")
+
+
+def free_mechanism(name: str) -> ct.Mechanism:
+    """An example of two degrees of freedom, its first drive driven by a constant moment for a second and a half."""
+    text = re.sub(r"^\[simulation\](?s:[^\[]*)", "", example_text(name), flags=re.M)
+    told = f'duration = 1.5\nsamples = 16\ntolerance = {TOLERANCE / 10}\ndriving = "0.2"'
+    return ct.parse_mechanism(f"{text}\n[simulation]\n{told}\n")
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", FREE)
+def test_several_degrees_of_freedom_move_as_in_a_simulation(name: str, tmp_path: Path) -> None:
+    mechanism = free_mechanism(name)
+    course = ct.simulate(mechanism)
+    drives = [drive.id for drive in mechanism.drives]
+    points = list(mechanism.moving_points)
+    outputs = [f"position {point} {axis}" for point in points for axis in "xy"]
+    fmu = fmu_program(
+        mechanism, None, [*outputs, *(f"drive {k}" for k in drives), "kinetic energy"], name=name
+    )
+    file = compiled(fmu, tmp_path)
+    assert validate_fmu(file) == []
+    # the moment of `driving` is positive in the sense in which the drive's law sets out
+    sense = {"double-pendulum": 1.0, "five-bar-pendulum": -1.0}[name]
+    for kind, tolerance in (("CoSimulation", TOLERANCE), ("ModelExchange", TOLERANCE / 1000)):
+        found = fmpy.simulate_fmu(
+            file, fmi_type=kind, stop_time=1.5, output_interval=0.1, relative_tolerance=tolerance,
+            start_values={f"drive moment {drives[0]}": sense * 0.2},
+            output=["status", *outputs, *(f"drive {k}" for k in drives)],
+        )  # fmt: skip
+        assert np.abs(found["time"] - course.time.values).max() < 1e-12
+        assert set(found["status"]) == {0}
+        for k, drive in enumerate(drives):
+            assert (
+                np.abs(found[f"drive {drive}"] - course.drive_value.values[:, k]).max() <= 10 * TOLERANCE
+            ), kind
+        for point in points:
+            for axis in "xy":
+                wanted = course.position.sel(point=point, axis=axis).values
+                assert np.abs(found[f"position {point} {axis}"] - wanted).max() <= 10 * TOLERANCE, kind
+    still = ct.simulate(mechanism, mechanism.simulation.model_copy(update={"driving": None}))  # type: ignore[union-attr]
+    assert np.abs(course.drive_value.values - still.drive_value.values).max() > 0.01
+
+
+@needs_compiler
+def test_a_start_that_does_not_close_is_closed(tmp_path: Path) -> None:
+    outputs = [f"position {point} {axis}" for point in "CD" for axis in "xy"]
+    fmu = fmu_program("five-bar-pendulum", None, outputs)
+    file = compiled(fmu, tmp_path)
+    start = {
+        one.name: float(one.attributes["start"]) for one in fmu.variables if one.name.startswith("coordinate")
+    }
+    name, value = next(iter(start.items()))
+    found = fmpy.simulate_fmu(
+        file, fmi_type="CoSimulation", stop_time=0.01, output_interval=0.01, start_values={name: value + 0.05},
+        output=[*outputs, *start],
+    )  # fmt: skip
+    assert abs(found[name][0] - value) > 0.01
+    for row in found:
+        apart = [row[f"position C {axis}"] - row[f"position D {axis}"] for axis in "xy"]
+        assert np.hypot(*apart) == pytest.approx(0.45, abs=1e-9)
+
+
+TWO_BARS = """
+gravity = [0, -9.81]
+[frame.points]
+O = [0, 0]
+[links.OA]
+length = 1
+mass = 1
+shape = "rod"
+[links.AB]
+length = 1
+mass = 1
+shape = "rod"
+[[drives]]
+link = "OA"
+start = 0.0
+[[drives]]
+link = "AB"
+start = 0.0
+speed = 1.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "options", "told"),
+    [
+        ('[[stops]]\nlink = "OA"\nmost = 1.0\n', {}, "stops"),
+        ('[[loads]]\nkind = "friction"\npoint = "A"\nlink = "AB"\nvalue = 0.1\n', {}, "friction"),
+        ('[simulation]\nduration = 1\nkeeps = ["AB"]\n', {}, "keep"),
+        ("", {"vary": ["links.AB.length"]}, "--vary"),
+        ("", {"start": 0.0}, "--from"),
+        ("", {"outputs": ["angle XY"]}, "angle XY"),
+    ],
+)  # fmt: skip
+def test_what_free_motion_is_no_fmu_is_refused_by_name(
+    more: str, options: dict[str, object], told: str
+) -> None:
+    with pytest.raises((NotComputedYet, InputError), match=told):
+        fmu_program(ct.parse_mechanism(TWO_BARS + more), **options)  # type: ignore[arg-type]

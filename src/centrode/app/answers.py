@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import traceback
+from base64 import b64decode
 from collections.abc import Callable, Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, TypeAlias
 
 from centrode.app.cam_scene import cam_scene
@@ -33,6 +34,7 @@ from centrode.model.files import mechanism_text
 from centrode.model.pmks import from_pmks
 from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import UNIT_SYMBOLS, spelled_unit
+from centrode.topics.topic import Lazily
 from centrode.version import __version__
 
 import numpy as np  # isort: skip
@@ -40,6 +42,7 @@ import numpy as np  # isort: skip
 Message: TypeAlias = Mapping[str, Any]
 Answer: TypeAlias = dict[str, Any] | bytes
 
+SKETCH = Lazily("centrode.sketches.imported_sketch", "sketch_content")
 KEPT_TEXTS = 64
 """Texts that are known by their digest."""
 CAM_READINESS: Mapping[str, Any] = {"mobility": None, "facts": [], "loose": [], "missing": [], "limit": None}
@@ -279,12 +282,28 @@ class Workbench:
         return {"name": name, "text": text, "digest": self._keep(text)}
 
     def import_link(self, message: Message) -> Answer:
-        """The text of a description from a link of PMKS+."""
+        """The text of a description from a link of PMKS+, or from a drawing."""
+        if "content" in message:
+            return self._import_drawing(message)
         url = message.get("url")
         if not isinstance(url, str):
             raise InputError("", _("a link is a text"))
         text = mechanism_text(from_pmks(url))
         return {"text": text, "digest": self._keep(text)}
+
+    def _import_drawing(self, message: Message) -> Answer:
+        """A drawing in Base64 as a description, with what was guessed and left out."""
+        name, content = message.get("name"), message.get("content")
+        if not (isinstance(name, str) and isinstance(content, str)):
+            raise InputError("", _("a drawing has a name and a content"))
+        try:
+            drawing = b64decode(content, validate=True)
+        except ValueError:
+            raise InputError("", _("the content of a drawing is in Base64")) from None
+        read = SKETCH(drawing, name[:100], PurePath(name).suffix.lower())
+        told = [_("guessed: {what}").format(what=one) for one in read.guesses]
+        told += [_("not read: {what}").format(what=one) for one in read.omitted]
+        return {"text": read.text, "digest": self._keep(read.text), "told": told}
 
     def panel(self, message: Message) -> Answer:
         """What a topic has to say about the description."""

@@ -1,8 +1,8 @@
-/* FMI 3.0 around the printed motion: model exchange and co-simulation. The printed part stands before, and defines: MODEL, the type
- * of its record; PREPARE and AT, its functions; OUTPUTS with output_rows; PARAMETERS; DYNAMIC, WRAPS and PERIOD; SHAFT_INERTIA; TOKEN.
+/* FMI 3.0 around a model: model exchange and co-simulation. The model stands before: its type fmu_model with prepare_model, rates,
+ * outputs_of and close_states; and OUTPUTS, PARAMETERS, INPUTS, STATES, START_INPUTS, START_STATES, MODEL_DIMENSIONS and TOKEN.
  *
- * Variables by their references: 0 time; 1 to 3 inputs; 4 and 5 states, 6 and 7 their derivatives; 8 and 9 states at the beginning;
- * 10 status; 11 tolerance of co-simulation; from 100 dimensions; from 1000 outputs.
+ * Variables by their references: 0 time; from 1 inputs; 10 status; 11 tolerance of co-simulation; from 100 dimensions; from 1000
+ * outputs; from 100000 states; from 200000 their derivatives.
  */
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,17 +19,15 @@
 typedef enum { fmi3OK, fmi3Warning, fmi3Discard, fmi3Error, fmi3Fatal } fmi3Status;
 typedef void (*LogMessage)(void *environment, fmi3Status status, const char *category, const char *message);
 
-enum { FIRST_DIMENSION = 100, FIRST_OUTPUT = 1000 };
+enum { FIRST_DIMENSION = 100, FIRST_OUTPUT = 1000, FIRST_STATE = 100000, FIRST_DERIVATIVE = 200000 };
 
 typedef struct {
-    MODEL model;
+    fmu_model model;
     double dimensions[PARAMETERS > 0 ? PARAMETERS : 1];
-    double inputs[3];   /* of dynamics: the moment of the drive; else value, speed and acceleration of the drive */
-    double start[2], state[2], derivative[2];
-    double time, tolerance, step;
-    double turned[OUTPUTS > 0 ? OUTPUTS : 1];   /* what a whole turn of the drive adds to each output */
-    double model_first;
-    int wraps, prepared, evaluated, status;
+    double inputs[INPUTS > 0 ? INPUTS : 1];
+    double start[STATES > 0 ? STATES : 1], state[STATES > 0 ? STATES : 1], derivative[STATES > 0 ? STATES : 1];
+    double time, tolerance, step, longest;
+    int prepared, evaluated, status;
     double output[OUTPUTS > 0 ? OUTPUTS : 1];
     void *environment;
     LogMessage log;
@@ -40,78 +38,38 @@ static fmi3Status fail(instance *c, const char *message) {
     return fmi3Error;
 }
 
+static const double start_inputs[] = START_INPUTS, start_states[] = START_STATES;
+
 static void reset(instance *c) {
     memcpy(c->dimensions, MODEL_DIMENSIONS, sizeof(double) * PARAMETERS);
-    c->inputs[0] = DYNAMIC ? 0.0 : START_PLACE;
-    c->inputs[1] = DYNAMIC ? 0.0 : START_SPEED;
-    c->inputs[2] = 0.0;
-    c->start[0] = START_PLACE;
-    c->start[1] = START_SPEED;
-    c->state[0] = c->start[0];
-    c->state[1] = c->start[1];
+    memcpy(c->inputs, start_inputs, sizeof(double) * INPUTS);
+    memcpy(c->start, start_states, sizeof(double) * STATES);
+    memcpy(c->state, start_states, sizeof(double) * STATES);
     c->time = 0.0;
     c->tolerance = 1e-9;
     c->step = 0.0;
+    c->longest = INFINITY;
     c->prepared = c->evaluated = 0;
 }
 
-/* The value of the drive within the range that was printed, and the whole turns that were taken off. */
-static double wrapped(const instance *c, double drive, double *turns) {
-    *turns = 0.0;
-    if (c->wraps) *turns = floor((drive - c->model_first) / PERIOD);
-    return drive - *turns * PERIOD;
-}
-
-static void prepare_model(instance *c) {
-    double first[OUTPUTS > 0 ? OUTPUTS : 1];
-    PREPARE(&c->model, c->dimensions);
+static void prepare(instance *c) {
+    prepare_model(&c->model, c->dimensions);
     c->prepared = 1;
     c->evaluated = 0;
-    c->wraps = 0;
-    c->model_first = FIRST_PLACE;
-    if (!WRAPS || AT(&c->model, FIRST_PLACE, 1.0, 0.0) != 0) return;
-    for (int k = 0; k < OUTPUTS; k++) first[k] = c->model.row[output_rows[k]];
-    if (AT(&c->model, FIRST_PLACE + PERIOD, 1.0, 0.0) != 0) return;
-    for (int k = 0; k < OUTPUTS; k++) {
-        const double grown = c->model.row[output_rows[k]] - first[k];
-        c->turned[k] = output_turns[k] ? PERIOD * floor(grown / PERIOD + 0.5) : 0.0;
-        if (!(fabs(grown - c->turned[k]) <= 1e-6 * (1.0 + fabs(first[k])))) return;
-    }
-    c->wraps = 1;
-}
-
-/* Derivatives of the states at a time; NaN where the mechanism does not reach. */
-static void rates(instance *c, double time, const double state[2], double rate[2]) {
-    double turns;
-    const double place = wrapped(c, state[0], &turns);
-    rate[0] = state[1];
-    rate[1] = NAN;
-    if (AT(&c->model, place, state[1], 0.0) != 0) return;
-    c->model.time = time;
-    set_place(&c->model, place, 0.0);
-    evaluate_reduced(&c->model);
-    const double inertia = c->model.reduced[0] + SHAFT_INERTIA, slope = c->model.reduced[1], moment = c->model.reduced[2];
-    rate[1] = (moment + c->inputs[0] - 0.5 * slope * state[1] * state[1]) / inertia;
 }
 
 static fmi3Status evaluate(instance *c) {
     if (c->evaluated) return fmi3OK;
-    if (!c->prepared) prepare_model(c);
-    double drive = c->inputs[0], speed = c->inputs[1], acceleration = c->inputs[2], turns;
-    if (DYNAMIC) {
-        rates(c, c->time, c->state, c->derivative);
-        drive = c->state[0];
-        speed = c->state[1];
-        acceleration = c->derivative[1];
-    }
-    c->status = AT(&c->model, wrapped(c, drive, &turns), speed, acceleration);
-    for (int k = 0; k < OUTPUTS; k++) c->output[k] = c->model.row[output_rows[k]] + turns * c->turned[k];
+    if (!c->prepared) prepare(c);
+    rates(&c->model, c->time, c->inputs, c->state, c->derivative);
+    c->status = outputs_of(&c->model, c->time, c->inputs, c->state, c->derivative, c->output);
     c->evaluated = 1;
     return fmi3OK;
 }
 
+#if STATES
 /* One step of Dormand and Prince's pair of orders 5 and 4; returns the error in units of the tolerance. */
-static double try_step(instance *c, double h, double next[2]) {
+static double try_step(instance *c, double h, double next[]) {
     static const double nodes[] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
     static const double weights[7][6] = {
         {0}, {1.0 / 5}, {3.0 / 40, 9.0 / 40}, {44.0 / 45, -56.0 / 15, 32.0 / 9},
@@ -119,15 +77,15 @@ static double try_step(instance *c, double h, double next[2]) {
         {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
         {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
     static const double errors[] = {71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-    double k[7][2], worst = 0.0;
+    double k[7][STATES], worst = 0.0;
     for (int s = 0; s < 7; s++) {
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < STATES; i++) {
             next[i] = c->state[i];
             for (int j = 0; j < s; j++) next[i] += h * weights[s][j] * k[j][i];
         }
-        rates(c, c->time + nodes[s] * h, next, k[s]);
+        rates(&c->model, c->time + nodes[s] * h, c->inputs, next, k[s]);
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < STATES; i++) {
         double error = 0.0;
         for (int s = 0; s < 7; s++) error += h * errors[s] * k[s][i];
         const double share = fabs(error) / (c->tolerance * (1e-3 + fmax(fabs(c->state[i]), fabs(next[i]))));
@@ -137,17 +95,18 @@ static double try_step(instance *c, double h, double next[2]) {
 }
 
 static fmi3Status integrate(instance *c, double end) {
-    double next[2];
-    if (!c->prepared) prepare_model(c);
+    double next[STATES];
+    if (!c->prepared) prepare(c);
     if (!(c->step > 0.0)) c->step = 1e-3;
     for (int steps = 0; c->time < end; steps++) {
-        const double left = end - c->time, h = c->step < left ? c->step : left;
+        const double left = end - c->time, size = fmin(c->step, c->longest), h = size < left ? size : left;
         if (steps > 1000000 || !(h > 1e-14 * (1.0 + fabs(c->time)))) return fail(c, "the motion does not reach the end of the step");
         const double error = try_step(c, h, next);
         if (error <= 1.0) {
             c->time = h == left ? end : c->time + h;
-            c->state[0] = next[0];
-            c->state[1] = next[1];
+            c->longest = close_states(&c->model, c->time, next);
+            if (c->longest < 0.0) return fail(c, "the mechanism stands at a change point");
+            memcpy(c->state, next, sizeof(next));
         }
         const double factor = error == error ? 0.9 * pow(fmax(error, 1e-10), -0.2) : 0.1;
         const double wanted = h * fmin(5.0, fmax(0.1, factor));
@@ -157,6 +116,7 @@ static fmi3Status integrate(instance *c, double end) {
     c->evaluated = 0;
     return fmi3OK;
 }
+#endif
 
 /* What importers call. */
 
@@ -207,10 +167,10 @@ EXPORTED fmi3Status fmi3EnterInitializationMode(void *p, bool tolerance_defined,
 
 EXPORTED fmi3Status fmi3ExitInitializationMode(void *p) {
     instance *c = p;
-    c->state[0] = c->start[0];
-    c->state[1] = c->start[1];
-    prepare_model(c);
-    return fmi3OK;
+    memcpy(c->state, c->start, sizeof(c->state));
+    prepare(c);
+    for (int k = 0; STATES && k < 20; k++) c->longest = close_states(&c->model, c->time, c->state);
+    return c->longest < 0.0 ? fail(c, "the mechanism stands at a change point") : fmi3OK;
 }
 
 EXPORTED fmi3Status fmi3Reset(void *p) {
@@ -223,12 +183,11 @@ EXPORTED fmi3Status fmi3GetFloat64(void *p, const uint32_t references[], size_t 
     (void)size;
     for (size_t k = 0; k < count; k++) {
         const uint32_t r = references[k];
-        if ((r == 6 || r == 7 || r >= FIRST_OUTPUT) && evaluate(c) != fmi3OK) return fmi3Error;
+        if (r >= FIRST_OUTPUT && evaluate(c) != fmi3OK) return fmi3Error;
         if (r == 0) values[k] = c->time;
-        else if (r >= 1 && r <= 3) values[k] = c->inputs[r - 1];
-        else if (r == 4 || r == 5) values[k] = c->state[r - 4];
-        else if (r == 6 || r == 7) values[k] = c->derivative[r - 6];
-        else if (r == 8 || r == 9) values[k] = c->start[r - 8];
+        else if (r >= 1 && r < 1 + INPUTS) values[k] = c->inputs[r - 1];
+        else if (r >= FIRST_STATE && r < FIRST_STATE + STATES) values[k] = c->state[r - FIRST_STATE];
+        else if (r >= FIRST_DERIVATIVE && r < FIRST_DERIVATIVE + STATES) values[k] = c->derivative[r - FIRST_DERIVATIVE];
         else if (r == 11) values[k] = c->tolerance;
         else if (r >= FIRST_DIMENSION && r < FIRST_DIMENSION + PARAMETERS) values[k] = c->dimensions[r - FIRST_DIMENSION];
         else if (r >= FIRST_OUTPUT && r < FIRST_OUTPUT + OUTPUTS) values[k] = c->output[r - FIRST_OUTPUT];
@@ -243,9 +202,8 @@ EXPORTED fmi3Status fmi3SetFloat64(void *p, const uint32_t references[], size_t 
     c->evaluated = 0;
     for (size_t k = 0; k < count; k++) {
         const uint32_t r = references[k];
-        if (r >= 1 && r <= 3) c->inputs[r - 1] = values[k];
-        else if (r == 4 || r == 5) c->state[r - 4] = c->start[r - 4] = values[k];
-        else if (r == 8 || r == 9) c->state[r - 8] = c->start[r - 8] = values[k];
+        if (r >= 1 && r < 1 + INPUTS) c->inputs[r - 1] = values[k];
+        else if (r >= FIRST_STATE && r < FIRST_STATE + STATES) c->state[r - FIRST_STATE] = c->start[r - FIRST_STATE] = values[k];
         else if (r == 11) c->tolerance = values[k];
         else if (r >= FIRST_DIMENSION && r < FIRST_DIMENSION + PARAMETERS) {
             c->dimensions[r - FIRST_DIMENSION] = values[k];
@@ -275,22 +233,25 @@ EXPORTED fmi3Status fmi3SetTime(void *p, double time) {
 
 EXPORTED fmi3Status fmi3SetContinuousStates(void *p, const double states[], size_t count) {
     instance *c = p;
-    for (size_t k = 0; k < count && k < 2; k++) c->state[k] = states[k];
+    for (size_t k = 0; k < count && k + 1 <= STATES; k++) c->state[k] = states[k];
     c->evaluated = 0;
     return fmi3OK;
 }
 
 EXPORTED fmi3Status fmi3GetContinuousStates(void *p, double states[], size_t count) {
     instance *c = p;
-    for (size_t k = 0; k < count && k < 2; k++) states[k] = c->state[k];
+    for (size_t k = 0; k < count && k + 1 <= STATES; k++) states[k] = c->state[k];
     return fmi3OK;
 }
 
 EXPORTED fmi3Status fmi3GetContinuousStateDerivatives(void *p, double derivatives[], size_t count) {
     instance *c = p;
     if (evaluate(c) != fmi3OK) return fmi3Error;
-    for (size_t k = 0; k < count && k < 2; k++) derivatives[k] = c->derivative[k];
-    return count && !(c->derivative[1] == c->derivative[1]) ? fail(c, "the mechanism does not reach this state") : fmi3OK;
+    for (size_t k = 0; k < count && k + 1 <= STATES; k++) derivatives[k] = c->derivative[k];
+    for (size_t k = 0; k < count && k + 1 <= STATES; k++) {
+        if (c->derivative[k] != c->derivative[k]) return fail(c, "the mechanism does not reach this state");
+    }
+    return fmi3OK;
 }
 
 EXPORTED fmi3Status fmi3GetNominalsOfContinuousStates(void *p, double nominals[], size_t count) {
@@ -301,7 +262,7 @@ EXPORTED fmi3Status fmi3GetNominalsOfContinuousStates(void *p, double nominals[]
 
 EXPORTED fmi3Status fmi3GetNumberOfContinuousStates(void *p, size_t *count) {
     (void)p;
-    *count = DYNAMIC ? 2 : 0;
+    *count = STATES;
     return fmi3OK;
 }
 
@@ -328,10 +289,10 @@ EXPORTED fmi3Status fmi3DoStep(void *p, double time, double size, bool no_state,
     (void)no_state;
     *event = *ends = *early = false;
     fmi3Status status = fmi3OK;
-    if (DYNAMIC) {
-        c->time = time;
-        status = integrate(c, time + size);
-    }
+#if STATES
+    c->time = time;
+    status = integrate(c, time + size);
+#endif
     if (status == fmi3OK) c->time = time + size;
     c->evaluated = 0;
     *last = c->time;

@@ -79,6 +79,25 @@ async function importLink(): Promise<void> {
   else take(answer.text, null, false);
 }
 
+const DRAWING = /\.(svg|dxf|linkage2)$/i;
+const base64 = (file: File): Promise<string> => new Promise((done, failed) => {
+  const reader = new FileReader();
+  reader.onload = () => done(String(reader.result).replace(/^[^,]*,?/, ""));
+  reader.onerror = failed;
+  reader.readAsDataURL(file);
+});
+async function fromComputer(file: File): Promise<void> {
+  if (file.size >= 1_200_000) wrong.value = say("too_large");
+  else if (DRAWING.test(file.name)) {
+    const answer = await ask({ do: "import", name: file.name, content: await base64(file) });
+    if (answer.error || answer.missing) wrong.value = sentences(answer.error?.message ?? answer.missing, answer.error?.repair ?? answer.repair);
+    else {
+      take(answer.text, null, false);
+      tell((answer.told as string[]).join(" · "));
+    }
+  } else take(await file.text(), null, false);
+}
+
 function OpenWindow() {
   const sought = filter.value.toLowerCase(), shown = (hello.value?.templates ?? []).filter((one) => `${one.title} ${one.name}`.toLowerCase().includes(sought));
   const groups = [...new Set(shown.map((one) => (one as Template & { group?: string }).group ?? ""))];
@@ -94,10 +113,9 @@ function OpenWindow() {
         <div class="buttons">
           {files.value.map((name) => <button type="button" onClick={() => void openFile(name)}>{name}</button>)}
           <label class="button file">{say("from_computer")}
-            <input type="file" accept=".toml,text/plain" onChange={(event) => {
+            <input type="file" accept=".toml,.svg,.dxf,.linkage2,text/plain" onChange={(event) => {
               const file = event.currentTarget.files?.[0];
-              if (file && file.size < 1_200_000) void file.text().then((content) => take(content, null, false));
-              else if (file) wrong.value = say("too_large");
+              if (file) void fromComputer(file);
             }} />
           </label>
         </div>
