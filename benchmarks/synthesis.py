@@ -29,7 +29,7 @@ FUNCTIONS: Mapping[str, tuple[float, dict[str, object]]] = {
         0.00697, {"formula": "log(x)/log(10)", "x": [1, 2], "swings": ["60 deg", "90 deg"]},
     ),
     "sin x on 0..90 deg, 90 and 90 deg": (
-        0.190, {"formula": "sin(x)", "x": [0, float(np.pi / 2)], "swings": ["90 deg", "90 deg"]},
+        0.190, {"formula": "sin(x*pi/180)", "x": [0, 90], "swings": ["90 deg", "90 deg"]},
     ),
 }  # fmt: skip
 """Function -> the least known greatest error [deg], and the request."""

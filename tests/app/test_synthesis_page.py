@@ -44,7 +44,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 @pytest.fixture
 def page(running: Any, server: Served) -> Iterator[Any]:
     one = running.new_page(viewport={"width": 1400, "height": 900})
-    one.set_default_timeout(45_000)
+    one.set_default_timeout(170_000)
     one.goto(f"http://127.0.0.1:{server.port}/synthesis?token={server.token}&language=en")
     one.wait_for_selector("#search")
     yield one
@@ -146,7 +146,7 @@ def test_what_is_wrong_is_said_and_a_search_is_stopped(page: Any) -> None:
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_everybody_can_use_it(running: Any, server: Served, language: str) -> None:
     page = running.new_page()
-    page.set_default_timeout(45_000)
+    page.set_default_timeout(170_000)
     page.goto(f"http://127.0.0.1:{server.port}/synthesis?token={server.token}&language={language}")
     page.wait_for_selector("#search")
     page.evaluate(AXE.read_text("utf-8"))
