@@ -31,6 +31,7 @@ from benchmarks import (  # noqa: E402
     simulation,
     solver,
     sweeps,
+    synthesis,
     tolerances,
     workbench,
 )
@@ -68,6 +69,7 @@ SECTIONS: Mapping[str, Section] = {
     "cluster": ("A sweep on two workers of this machine, by the clock", cluster.clusters),
     "page": (f"A page in Node: changed numbers to a motion of {pages.SAMPLES} samples", pages.recomputes),
     "workbench": (f"A joint dragged in the workbench, {workbench.STEPS} steps", workbench.drags),
+    "synthesis": ("Synthesis: published paths and functions, times by the clock", synthesis.synthesis),
     "tolerances": ("Tolerances, one output", tolerances.tolerances),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip

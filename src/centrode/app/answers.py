@@ -25,6 +25,7 @@ from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
 from centrode.app.scene import scene_of
 from centrode.app.sketch import Sketch
+from centrode.app.synthesis_bench import synthesis_answers, synthesis_state
 from centrode.app.templates import template_list
 from centrode.app.words import spoken_words
 from centrode.errors import CentrodeError, InputError
@@ -86,6 +87,8 @@ class Workbench:
             "export": self.export,
             "page": self.page,
             "gears": gear_answer,
+            "synthesis": synthesis_state,
+            "synthesise": synthesis_answers,
         }
 
     def answer(self, message: Message) -> Answer:

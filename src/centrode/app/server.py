@@ -32,7 +32,7 @@ WAITING = 32
 """Messages of a page that wait; of one that sends more, the connection is closed."""
 QUICK, SLOW = 20.0, 180.0
 """Seconds that an answer may take, and that of a panel or a file."""
-SLOW_NAMES = ("panel", "export", "page")
+SLOW_NAMES = ("panel", "export", "page", "synthesise")
 HOSTS = ("127.0.0.1", "localhost")
 WARMING = "[points]\nA = [0, 0]\nB = [1, 0]\n[frame]\npoints = ['A']\n[links.AB]\n[[drives]]\nlink = 'AB'\nspeed = 1\n"
 TOO_LONG = mark("this takes too long"), mark("give fewer samples, or a shorter range")
@@ -171,6 +171,9 @@ def server_application(
     async def gears(request: Request) -> Response:
         return await opened(request, "gears.html")
 
+    async def synthesis(request: Request) -> Response:
+        return await opened(request, "synthesis.html")
+
     async def opened(request: Request, name: str) -> Response:
         said = "\n".join(_spoken_error(REFUSED, _preferred_language(request)).values())
         token, code = (request.query_params.get(key) for key in ("token", "code"))
@@ -221,6 +224,7 @@ def server_application(
     routes = [
         Route("/", index),
         Route("/gears", gears),
+        Route("/synthesis", synthesis),
         Route("/export", export, methods=["POST"]),
         Route("/page", page),
         WebSocketRoute("/socket", socket),

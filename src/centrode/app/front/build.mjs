@@ -11,7 +11,7 @@ await mkdir(out, { recursive: true });
 const built = await esbuild.build({
   metafile: true,
   absWorkingDir: here,
-  entryPoints: [{ in: "app.tsx", out: "app" }, { in: "editor.ts", out: "editor" }, { in: "app.css", out: "app" }, { in: "gears.ts", out: "gears" }, { in: "gears.css", out: "gears" }],
+  entryPoints: [{ in: "app.tsx", out: "app" }, { in: "editor.ts", out: "editor" }, { in: "app.css", out: "app" }, { in: "gears.ts", out: "gears" }, { in: "gears.css", out: "gears" }, { in: "synthesis.ts", out: "synthesis" }, { in: "synthesis.css", out: "synthesis" }],
   bundle: true,
   minify: true,
   charset: "utf8",
@@ -26,7 +26,7 @@ const built = await esbuild.build({
   assetNames: "[name]",
   logLevel: "warning",
 });
-for (const name of ["index.html", "gears.html"]) await copyFile(join(here, name), join(out, name));
+for (const name of ["index.html", "gears.html", "synthesis.html"]) await copyFile(join(here, name), join(out, name));
 
 // The licences of what is bundled go with it.
 const packages = [...new Set(Object.keys(built.metafile.inputs).flatMap((file) => /node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(file)?.[1] ?? []))].sort();

@@ -1,0 +1,313 @@
+// The page of syntheses: a path or poses drawn here, four-bar linkages for it that the server finds, one of them for the workbench.
+import { pack } from "./share";
+
+type Point = [number, number];
+type Target = [number, number, number];
+interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; points: Record<string, Point>; text: string }
+type Answer = Record<string, any> & { id: number; error?: { message: string; repair: string } };
+
+const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')!.content || "{}") as { token?: string; refused?: string };
+const LANGUAGE = "centrode.language";
+const chosen = (): string | null => { try { return localStorage.getItem(LANGUAGE); } catch { return null; } };
+const wished = new URLSearchParams(location.search).get("language") ?? chosen() ?? navigator.language.slice(0, 2);
+const language = ["en", "ru", "uk"].includes(wished) ? wished : "en";
+document.documentElement.lang = language;
+const token = given.token ?? sessionStorage.getItem("token") ?? "";
+if (given.token) {
+  sessionStorage.setItem("token", given.token);
+  history.replaceState(null, "", location.pathname);
+}
+
+// Requests by their numbers: the search is in flight while others ask how far it is.
+class Line {
+  private socket = new WebSocket(`ws://${location.host}/socket?token=${encodeURIComponent(token)}`);
+  private flying = new Map<number, (answer: Answer) => void>();
+  private number = 0;
+  private open: Promise<void>;
+  constructor(lost: () => void) {
+    this.open = new Promise((resolve) => { this.socket.onopen = () => resolve(); });
+    this.socket.onclose = lost;
+    this.socket.onmessage = (event) => {
+      const answer = JSON.parse(event.data as string) as Answer, take = this.flying.get(answer.id);
+      this.flying.delete(answer.id);
+      take?.(answer);
+    };
+  }
+  async ask(request: object): Promise<Answer> {
+    await this.open;
+    const id = ++this.number;
+    return new Promise((resolve) => {
+      this.flying.set(id, resolve);
+      this.socket.send(JSON.stringify({ language, ...request, id }));
+    });
+  }
+}
+
+const make = <K extends keyof HTMLElementTagNameMap>(name: K, properties: Partial<HTMLElementTagNameMap[K]> = {}, ...children: (Node | string)[]): HTMLElementTagNameMap[K] => {
+  const element = Object.assign(document.createElement(name), properties);
+  element.append(...children);
+  return element;
+};
+const draw = (name: string, attributes: Record<string, string | number>): SVGElement => {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  return element;
+};
+const path = (line: Point[], closed = false): string => line.map(([x, y], k) => `${k ? "L" : "M"}${x} ${-y}`).join("") + (closed ? "z" : "");
+const far = (a: Point, b: Point): number => Math.hypot(a[0] - b[0], a[1] - b[1]);
+
+const WIDE = 240, TALL = 160, STEP = 5, TURN = 15; // millimetres of the sheet, of a step of the cross; degrees
+const CLOSED_POINTS = 20, OPEN_POINTS = 15; // of a line that is dragged
+const BETWEEN = 250; // ms between two questions how far the search is
+
+// A dragged line as points at equal distances along it.
+function spread(line: Point[], closed: boolean): Point[] {
+  const round = closed ? [...line, line[0]!] : line;
+  const along = [0];
+  for (let k = 1; k < round.length; k += 1) along.push(along[k - 1]! + far(round[k - 1]!, round[k]!));
+  const whole = along[along.length - 1]!, count = closed ? CLOSED_POINTS : OPEN_POINTS, spots: Point[] = [];
+  let at = 1;
+  for (let k = 0; k < count; k += 1) {
+    const wanted = (whole * k) / (closed ? count : count - 1);
+    while (at < along.length - 1 && along[at]! < wanted) at += 1;
+    const part = (wanted - along[at - 1]!) / (along[at]! - along[at - 1]! || 1), a = round[at - 1]!, b = round[at]!;
+    spots.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
+  }
+  return spots;
+}
+
+// The linkage in its first position with what its point traces.
+function pictured(one: Found): SVGElement[] {
+  const { O, A, B, D, P } = one.points as Record<string, Point>, coupler = [A, B, P].filter(Boolean) as Point[];
+  return [
+    draw("path", { class: "links", d: path([O!, A!]) + path([D!, B!]) + path(coupler, true) }),
+    draw("path", { class: "traced", d: path(one.curve) }),
+  ];
+}
+function box(points: Point[], margin: number): [number, number, number, number] {
+  const xs = points.map(([x]) => x), ys = points.map(([, y]) => -y);
+  const [left, top] = [Math.min(...xs), Math.min(...ys)], [wide, tall] = [Math.max(...xs) - left, Math.max(...ys) - top], edge = margin * Math.max(wide, tall, 1);
+  return [left - edge, top - edge, wide + 2 * edge, tall + 2 * edge];
+}
+
+async function begin(): Promise<void> {
+  const root = document.getElementById("synthesis")!;
+  if (given.refused) {
+    root.textContent = given.refused;
+    return;
+  }
+  const said = make("p", { id: "said" });
+  said.setAttribute("role", "status");
+  let lost = "";
+  const line = new Line(() => { said.textContent = lost; });
+  const words = (await line.ask({ do: "synthesis", want: "words" })).words as Record<string, string>;
+  lost = words.lost!;
+  document.title = `${words.title} – centrode`;
+
+  const kind = make("select", { id: "kind" }, ...["path", "motion"].map((one) => make("option", { value: one, textContent: words[one]! })));
+  const check = (id: string, checked: boolean) => make("input", { id, type: "checkbox", checked });
+  const closed = check("closed", true), crank = check("crank", true), order = check("order", true);
+  const transmission = make("input", { id: "transmission", type: "number", min: "0", max: "89", step: "1" });
+  const ratio = make("input", { id: "length_ratio", type: "number", min: "1", step: "0.5", value: "6" });
+  const size = make("input", { id: "size", type: "number", min: "0", step: "10", value: "500" });
+  const rows = make("textarea", { id: "targets", spellcheck: false }), rowsName = make("span");
+  const hint = make("p", { className: "hint", id: "hint" });
+  const clear = make("button", { type: "button", id: "clear", textContent: words.clear! });
+  const search = make("button", { type: "button", id: "search", className: "first", textContent: words.search! });
+  const stop = make("button", { type: "button", id: "stop", textContent: words.stop!, hidden: true });
+  const share = make("progress", { id: "share", max: 1, value: 0, hidden: true });
+  share.setAttribute("aria-label", words.searching!);
+  const canvas = draw("svg", { id: "canvas", tabindex: 0, role: "application", "aria-label": words.drawing!, "aria-describedby": "hint" }) as SVGSVGElement;
+  const list = make("ul", { id: "answers" });
+  const insert = make("button", { type: "button", id: "insert", className: "first", textContent: words.insert!, disabled: true });
+  const checkRow = (box: HTMLInputElement, word: string) => make("label", { className: "check" }, box, word);
+  const closedRow = checkRow(closed, words.closed!);
+  root.append(
+    make("section", {}, make("h1", { textContent: words.title! }), make("p", { textContent: words.lead! }),
+      make("label", {}, words.wanted!, kind), closedRow, checkRow(crank, words.crank!), checkRow(order, words.order!),
+      make("label", {}, words.transmission!, transmission), make("label", {}, words.length_ratio!, ratio), make("label", {}, words.most_size!, size),
+      make("label", { className: "rows" }, rowsName, rows),
+      make("div", { className: "acts" }, search, stop, clear), share, said,
+      make("a", { href: "/", textContent: words.workbench!, id: "workbench" })),
+    make("section", {}, make("h2", { textContent: words.drawing! }), canvas, hint),
+    make("section", {}, make("h2", { textContent: words.answers! }), list, make("div", { className: "acts" }, insert)));
+
+  let targets: Target[] = [], found: Found[] = [], shown = -1, dragged: Point[] | null = null;
+  let cross: Target = [0, 0, 0];
+  const poses = (): boolean => kind.value === "motion";
+  const round = (value: number): number => Math.round(value * 100) / 100;
+
+  const paint = (): void => {
+    const one = found[shown], base: Point[] = [[-WIDE / 2, -TALL / 2], [WIDE / 2, TALL / 2]];
+    const view = one ? box([...base, ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
+    canvas.setAttribute("viewBox", view.join(" "));
+    const unit = Math.max(view[2] / WIDE, view[3] / TALL);
+    const lines = [];
+    for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
+    for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
+    const spots = targets.map(([x, y]) => [x, y] as Point);
+    const parts: SVGElement[] = [draw("path", { class: "grid", d: lines.join("") })];
+    if (one) parts.push(...pictured(one));
+    if (dragged) parts.push(draw("path", { class: "wanted", d: path(dragged) }));
+    if (!poses() && spots.length > 1) parts.push(draw("path", { class: "wanted", d: path(spots, closed.checked) }));
+    for (const [x, y, turn] of targets) {
+      const along: Point = [Math.cos((turn * Math.PI) / 180) * 12 * unit, Math.sin((turn * Math.PI) / 180) * 12 * unit];
+      if (poses()) parts.push(draw("path", { class: "pose", d: path([[x, y], [x + along[0], y + along[1]]]) }));
+      parts.push(draw("circle", { class: "target", cx: x, cy: -y, r: 1.6 * unit }));
+    }
+    if (one) {
+      for (const [name, [x, y]] of Object.entries(one.points)) parts.push(draw("circle", { class: name === "O" || name === "D" ? "fixed" : "hinge", cx: x, cy: -y, r: 1.7 * unit }));
+    }
+    if (document.activeElement === canvas) {
+      const [x, y, turn] = cross, size = 4 * unit;
+      parts.push(draw("path", { class: "cross", d: `M${x - size} ${-y}h${2 * size}M${x} ${-y - size}v${2 * size}` }));
+      if (poses()) parts.push(draw("path", { class: "cross", d: path([[x, y], [x + 12 * unit * Math.cos((turn * Math.PI) / 180), y + 12 * unit * Math.sin((turn * Math.PI) / 180)]]) }));
+    }
+    canvas.replaceChildren(...parts);
+  };
+  const write = (): void => { rows.value = targets.map((one) => one.slice(0, poses() ? 3 : 2).map(round).join("  ")).join("\n"); };
+  const forget = (): void => {
+    found = [];
+    shown = -1;
+    list.replaceChildren();
+    insert.disabled = true;
+  };
+  const put = (next: Target[]): void => {
+    targets = next;
+    forget();
+    write();
+    paint();
+  };
+  const read = (): void => {
+    targets = rows.value.split("\n").map((row) => row.trim().split(/[\s;]+/).map((one) => Number(one.replace(",", "."))))
+      .filter((row) => row.length >= 2 && row.every(Number.isFinite)).map(([x, y, turn]) => [x!, y!, turn ?? 0]);
+    forget();
+    paint();
+  };
+  const change = (): void => {
+    hint.textContent = words[poses() ? "hint_motion" : "hint_path"]!;
+    rowsName.textContent = words[poses() ? "targets_motion" : "targets"]!;
+    closedRow.hidden = poses();
+    put([]);
+  };
+
+  // the hand
+  const spot = (event: PointerEvent): Point => {
+    const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(canvas.getScreenCTM()!.inverse());
+    return [round(at.x), round(-at.y)];
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    dragged = [spot(event)];
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!dragged) return;
+    dragged.push(spot(event));
+    paint();
+  });
+  const drop = (): void => {
+    if (!dragged) return;
+    const drawn = dragged, first = drawn[0]!, last = drawn[drawn.length - 1]!;
+    dragged = null;
+    const reach = Math.max(...drawn.map((one) => far(one, first)));
+    cross = [last[0], last[1], cross[2]];
+    if (poses()) {
+      const turn = far(first, last) > 3 ? round((Math.atan2(last[1] - first[1], last[0] - first[0]) * 180) / Math.PI) : 0;
+      put([...targets, [first[0], first[1], turn]]);
+    } else if (reach < 3) {
+      put([...targets, [first[0], first[1], 0]]);
+    } else {
+      closed.checked = far(first, last) < 0.25 * reach;
+      put(spread(drawn, closed.checked).map(([x, y]) => [round(x), round(y), 0]));
+    }
+  };
+  canvas.addEventListener("pointerup", drop);
+  canvas.addEventListener("pointercancel", () => { dragged = null; paint(); });
+  canvas.addEventListener("focus", paint);
+  canvas.addEventListener("blur", paint);
+  canvas.addEventListener("keydown", (event) => {
+    const step = event.shiftKey ? 4 * STEP : STEP, [x, y, turn] = cross;
+    const moved: Record<string, Target> = {
+      ArrowLeft: [x - step, y, turn], ArrowRight: [x + step, y, turn], ArrowUp: [x, y + step, turn], ArrowDown: [x, y - step, turn],
+      ",": [x, y, turn + TURN], ".": [x, y, turn - TURN],
+    };
+    if (moved[event.key]) cross = moved[event.key]!;
+    else if (event.key === "Enter" || event.key === " ") put([...targets, [...cross]]);
+    else if (event.key === "Backspace") put(targets.slice(0, -1));
+    else return;
+    event.preventDefault();
+    paint();
+  });
+
+  const show = (number: number): void => {
+    shown = number;
+    [...list.querySelectorAll("button")].forEach((one, k) => one.setAttribute("aria-pressed", String(k === number)));
+    insert.disabled = number < 0;
+    paint();
+  };
+  const cards = (): void => {
+    list.replaceChildren(...found.map((one, k) => {
+      const small = draw("svg", { viewBox: box([...one.curve, ...Object.values(one.points)], 0.06).join(" "), "aria-hidden": "true" });
+      small.append(...pictured(one));
+      const facts = one.facts.map(([name, value]) => make("span", {}, `${words[name]}: `, make("b", { textContent: value })));
+      const card = make("button", { type: "button", className: "card" });
+      card.append(small, make("span", {}, make("b", { textContent: words.answer!.replace("{number}", String(k + 1)) }), ...facts));
+      card.addEventListener("click", () => show(k));
+      return make("li", {}, card);
+    }));
+  };
+
+  let ticket = "", wantsEnd = false;
+  const follow = async (mine: string): Promise<void> => {
+    while (ticket === mine) {
+      const state = await line.ask({ do: "synthesis", want: wantsEnd ? "stop" : "progress", ticket: mine });
+      if (typeof state.share === "number") share.value = Math.max(share.value, state.share);
+      await new Promise((resolve) => setTimeout(resolve, BETWEEN));
+    }
+  };
+  search.addEventListener("click", async () => {
+    if (ticket) return;
+    const mine = [...crypto.getRandomValues(new Uint8Array(16))].map((one) => one.toString(16).padStart(2, "0")).join("");
+    ticket = mine;
+    wantsEnd = false;
+    forget();
+    paint();
+    said.textContent = "";
+    share.value = 0;
+    search.disabled = true;
+    share.hidden = stop.hidden = false;
+    stop.disabled = false;
+    const constraints: Record<string, unknown> = { order: order.checked };
+    if (crank.checked) constraints.crank = "OA";
+    if (Number(transmission.value) > 0) constraints.transmission = `${transmission.value} deg`;
+    if (Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
+    if (Number(size.value) > 0) constraints.size = [`${size.value} mm`, `${size.value} mm`];
+    const places = targets.map(([x, y, turn]) => [`${x} mm`, `${y} mm`, ...(poses() ? [`${turn} deg`] : [])]);
+    const wanted = { kind: kind.value, targets: places, constraints, ...(poses() ? {} : { closed: closed.checked }) };
+    void follow(mine);
+    const got = await line.ask({ do: "synthesise", ticket: mine, wanted });
+    ticket = "";
+    search.disabled = false;
+    share.hidden = stop.hidden = true;
+    if (got.error) {
+      said.textContent = [got.error.message, got.error.repair].filter(Boolean).join("; ");
+      return;
+    }
+    found = got.answers as Found[];
+    if (!got.complete) said.textContent = words.stopped!;
+    cards();
+    show(found.length ? 0 : -1);
+  });
+  stop.addEventListener("click", () => { wantsEnd = true; stop.disabled = true; });
+  insert.addEventListener("click", async () => {
+    const one = found[shown];
+    if (one) location.href = `/#m=${await pack(one.text)}`;
+  });
+  clear.addEventListener("click", () => put([]));
+  rows.addEventListener("input", read);
+  closed.addEventListener("change", () => { forget(); paint(); });
+  kind.addEventListener("change", change);
+  change();
+}
+
+void begin();

@@ -1,0 +1,165 @@
+"""What the page of syntheses asks: the search for what was drawn, how far it is, its end before the time, its answers.
+
+The search runs in the process of what takes longer. Beside it the other process reads how far it is, and tells it to
+stop, by files in a folder that only this user may open.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from centrode import render
+from centrode.errors import InputError
+from centrode.kinematics.motion import motion
+from centrode.locale import _, mark
+from centrode.model.files import mechanism_text
+from centrode.sheets.texts import Number, Text
+from centrode.synthesis.answers import Answer, SynthesisResults
+from centrode.synthesis.requests import SYNTHESES
+from centrode.synthesis.synthesise import synthesise
+
+WORDS: Mapping[str, str] = {
+    "title": mark("Synthesis"),
+    "lead": mark("Draw what a point or a link has to do: four-bar linkages that do it are sought."),
+    "wanted": mark("Wanted"),
+    "path": mark("a path of a point"),
+    "motion": mark("poses of a link"),
+    "hint_path": mark(
+        "Drag a line, or press where the point has to pass. With the keyboard: arrow keys move the cross, Enter sets "
+        "a point, Backspace removes the last one."
+    ),
+    "hint_motion": mark(
+        "Press where the link has to be and drag in its direction. With the keyboard: arrow keys move the cross, the "
+        "comma and the full stop turn it, Enter sets a pose, Backspace removes the last one."
+    ),
+    "drawing": mark("Drawing"),
+    "targets": mark("Targets, mm"),
+    "targets_motion": mark("Targets, mm and degrees"),
+    "clear": mark("Remove all"),
+    "closed": mark("closed path"),
+    "crank": mark("the crank turns fully"),
+    "order": mark("targets are passed in their order"),
+    "transmission": mark("least transmission angle, degrees"),
+    "length_ratio": mark("longest to shortest link at most"),
+    "most_size": mark("width and height at most, mm"),
+    "search": mark("Search"),
+    "stop": mark("Stop"),
+    "searching": mark("searching"),
+    "answers": mark("Answers"),
+    "answer": mark("answer {number}"),
+    "stopped": mark("The search was stopped: these are the answers until then."),
+    "error": mark("r.m.s. error"),
+    "greatest": mark("greatest error"),
+    "least_transmission": mark("least transmission angle"),
+    "size": mark("size"),
+    "insert": mark("Insert into the workbench"),
+    "workbench": mark("Workbench"),
+    "lost": mark("the connection to centrode is lost"),
+}
+"""Labels of the page by their names in it."""
+TICKET = re.compile(r"[0-9a-f]{32}")
+"""What a page names its search by, so that no other one stops it."""
+DIGITS = 6
+"""Significant digits of places in a picture."""
+EVERY = 2
+"""Of so many places of a traced curve the page shows one."""
+
+
+def synthesis_state(message: Mapping[str, Any]) -> dict[str, Any]:
+    """The words of the page, or how far its search is, which ends where the page wants it to stop."""
+    want = message.get("want")
+    if want == "words":
+        return {"words": {name: _(word) for name, word in WORDS.items()}}
+    if want not in ("progress", "stop"):
+        raise InputError("", _("the server does not know this request"))
+    folder = _folder(message)
+    if want == "stop" and folder.is_dir():
+        (folder / "stop").touch()
+    try:
+        return {"share": float((folder / "share").read_text("ascii"))}
+    except (OSError, ValueError):
+        return {"share": 0.0}
+
+
+def synthesis_answers(message: Mapping[str, Any]) -> dict[str, Any]:
+    """The answers to what was drawn.
+
+    Raises InputError for a request that is none, MotionError where nothing was found.
+    """
+    wanted = message.get("wanted")
+    if not isinstance(wanted, Mapping):
+        raise InputError("", _("the message names no description"))
+    tables = {
+        "display": {"length": "mm", "angle": "deg"},
+        "synthesis": {"topology": "crank-rocker", **wanted},
+    }
+    task = SYNTHESES.from_tables(tables)
+    if task.synthesis.kind not in ("path", "motion"):
+        raise InputError("kind", _("the server does not know this request"))
+    with _files(_folder(message)) as folder:
+
+        def say(share: float) -> None:
+            # the other process reads a whole number at any time
+            (folder / "new").write_text(f"{share:.4f}", "ascii")
+            (folder / "new").replace(folder / "share")
+
+        found = synthesise(task, say, (folder / "stop").exists)
+    return {"complete": found.complete, "answers": [_row(found, one) for one in found.answers]}
+
+
+def _folder(message: Mapping[str, Any]) -> Path:
+    ticket = message.get("ticket")
+    if not isinstance(ticket, str) or not TICKET.fullmatch(ticket):
+        raise InputError("", _("the server does not know this request"))
+    return Path(tempfile.gettempdir()) / f"centrode-synthesis-{ticket}"
+
+
+@contextmanager
+def _files(folder: Path) -> Iterator[Path]:
+    folder.mkdir(mode=0o700)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
+    """An answer as the page shows it: places in millimetres."""
+    display = found.task.display
+
+    def words(text: Text) -> str:
+        return render.plain_text(text, display)
+
+    facts = [
+        ["error", words(Number(answer.error, "m", digits=".3g"))],
+        ["greatest", words(Number(answer.greatest, "m", digits=".3g"))],
+    ]
+    if math.isfinite(answer.transmission):
+        facts.append(["least_transmission", words(Number(answer.transmission, "rad", digits=".3g"))])
+    if all(map(math.isfinite, answer.size)):
+        facts.append(["size", " × ".join(words(Number(one, "m", digits=".3g")) for one in answer.size)])
+    mechanism = answer.mechanism
+    start = float(answer.drive[0]) if len(answer.drive) else 0.0
+    places = motion(mechanism, at=[start]).position.isel(sample=0)
+    points = {
+        str(name): _place(complex(*places.sel(point=name).to_numpy())) for name in places.point.to_numpy()
+    }
+    points |= {str(name): _place(complex(*place)) for name, place in mechanism.frame.points.items()}
+    return {
+        "facts": facts,
+        "curve": [_place(one) for one in answer.curve[::EVERY]],
+        "met": [_place(one) for one in answer.met],
+        "points": points,
+        "text": mechanism_text(mechanism),
+    }
+
+
+def _place(place: complex) -> list[float]:
+    return [float(f"{part * 1e3:.{DIGITS}g}") for part in (place.real, place.imag)]
