@@ -1,7 +1,7 @@
 """Inverse dynamics of two drives with given laws, against a table that other equations made.
 
-tests/reference/dynamics/inverse-dynamics-five-bar.csv: moments that both drives give to the five-bar in a field of gravity with a
-spring, and their power; the source advises 1e-10.
+tests/reference/dynamics/inverse-dynamics-five-bar.csv: moments that both drives give to the five-bar in a field of
+gravity with a spring, and their power; the source advises 1e-10.
 """
 
 from __future__ import annotations
