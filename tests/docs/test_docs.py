@@ -44,6 +44,8 @@ DESCRIPTION, RESULTS = (
     for name in ("description", "results")
 )
 """The pages of each, `description.md` and `description-drives.md` and so on."""
+# what stops, events and controllers have stands with what they do
+DESCRIPTION += TEXTS[ROOT / "docs" / "moving-machines.md"]
 REFERENCE = [
     page for page in PAGES if page.parent == MADE or page.stem.partition("-")[0] in ("description", "results")
 ]
