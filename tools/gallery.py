@@ -17,7 +17,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
+from centrode.animation.animate import animate
 from centrode.animation.gears import MeshLayer
+from centrode.animation.video_files import Pace
 from centrode.gears.profiles import wheel_outline
 from centrode.render.drawing.style import PALETTE
 from centrode.render.figures.linkages import draw, initial_sample, read_scene
@@ -42,6 +44,11 @@ Pairs (`centrode gears NAME`) with their contacts on the line of action, pitch c
 (`centrode trains NAME`).
 """
 GEARS = ("gear pair", "gear train")
+MOVING = ("catapult", "door-closer")
+"""What a simulation moves in a way that a picture does not show: animations."""
+FRAMES, SIZE = 24, "320x320"
+ELSEWHERE = {"vibrating-screen": "images/vibrating-screen-mode.gif"}
+"""What moves too little to be seen, by its modes."""
 
 
 def picture(name: str) -> bytes:
@@ -113,7 +120,9 @@ def _table(names: Sequence[str]) -> str:
 
 def _cell(name: str) -> str:
     title = ct.example(name).title
-    return f"![{title}](images/gallery/{name}.png)<br>{title}<br>`{name}`"
+    ending = "gif" if name in MOVING else "png"
+    place = ELSEWHERE.get(name, f"images/gallery/{name}.{ending}")
+    return f"![{title}]({place})<br>{title}<br>`{name}`"
 
 
 def main(names: list[str]) -> None:
@@ -121,6 +130,11 @@ def main(names: list[str]) -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     of_gears = [name for kind in GEARS for name in ct.example_names(kind)]
     for name in names or [*ct.example_names("linkage"), *of_gears]:
+        if name in MOVING:
+            animate(name, FOLDER / f"{name}.gif", pace=Pace(frames=FRAMES), simulation=True, size=SIZE)
+            continue
+        if name in ELSEWHERE:
+            continue
         made = picture_of_gears(name) if name in of_gears else picture(name)
         (FOLDER / f"{name}.png").write_bytes(made)
 

@@ -161,7 +161,7 @@ def same_bits(one: Solved, sample: int, other: Solved, k: int) -> None:
     np.testing.assert_array_equal(one.residual[0, sample], other.residual[0, k])
 
 
-BY_TIME = ("wiper", "two-link-arm", "cam-driven-linkage")
+BY_TIME = ("wiper", "two-link-arm", "cam-driven-linkage", "catapult", "door-closer", "vibrating-screen")
 """Driven by laws of time, or several drives: a value of the drive alone does not say where they are."""
 
 

@@ -24,8 +24,10 @@ TYPES = {
 }
 
 
-def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
+def fits(value: Any, schema: dict[str, Any] | bool, whole: dict[str, Any]) -> bool:
     """A light reading of the schema's own words; enough for the words it uses."""
+    if isinstance(schema, bool):
+        return schema
     if "$ref" in schema:
         return fits(value, whole["$defs"][schema["$ref"].removeprefix("#/$defs/")], whole)
     if "anyOf" in schema:

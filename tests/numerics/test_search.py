@@ -1,5 +1,8 @@
 """Roots and extremes against polynomials with known roots, mpmath, and dense sampling."""
 
+import math
+from collections.abc import Callable
+
 import mpmath
 import numpy as np
 import pytest
@@ -19,6 +22,7 @@ from centrode.numerics.search import (
     roots,
     sign_changes,
     tops,
+    zero_between,
 )
 
 EPS = 2.0**-52
@@ -305,3 +309,21 @@ def test_rows_with_functions_of_their_own():
     assert np.abs(values - [1.0, 1.0, 0.75]).max() <= 4.0 * EPS
     assert np.abs(places[:2] - centres[:2]).max() <= 1e-7
     assert places[2] == -0.5
+
+
+@pytest.mark.parametrize(
+    ("function", "low", "high", "place"),
+    [
+        (lambda x: 2.0 - x * x, 0.0, 3.0, math.sqrt(2.0)),
+        (math.cos, 1.0, 2.0, math.pi / 2),
+        (lambda x: -((x - 1.0) ** 3), 0.0, 5.0, 1.0),
+        (lambda x: math.exp(-50.0 * x) - 1e-9, 0.0, 1.0, math.log(1e9) / 50.0),
+        (lambda x: 1.0 if x < 0.3 else -1.0, 0.0, 1.0, 0.3),
+        (lambda x: 5.0 - x, 0.0, 5.0, 5.0),
+        (lambda x: x - 1000.25, 1000.0, 1001.0, 1000.25),
+    ],
+)
+def test_one_zero_of_a_function_of_plain_numbers(
+    function: Callable[[float], float], low: float, high: float, place: float
+) -> None:
+    assert abs(zero_between(function, low, high, 1e-16) - place) <= 4 * EPS * place

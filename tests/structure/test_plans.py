@@ -14,6 +14,8 @@ from centrode.structure.rank import count
 FORMULAS = {
     "andrews-squeezer": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
     "andrews-mechanism": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
+    "catapult": "I(cross) -> I(arm) -> I(stone)",
+    "vibrating-screen": "I(slider G) -> I(screen) -> I(exciter)",
     "double-pendulum": "I(OA) -> I(AB)",
     "five-bar-pendulum": "I(AB) -> I(ED) -> II(BC, DC)",
     "antiparallelogram": "I(OA) -> II(AB, DB)",
@@ -50,6 +52,8 @@ MOBILITY = {
     "excavator-arm": 3,
     "double-pendulum": 2,
     "five-bar-pendulum": 2,
+    "catapult": 3,
+    "vibrating-screen": 3,
 }
 BY_CHEBYSHEV = MOBILITY | {"three-crank-parallelogram": 0}
 

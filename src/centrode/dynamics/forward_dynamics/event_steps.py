@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
-from importlib import import_module
+from functools import cached_property
 from math import inf, isnan, nan
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -71,15 +70,13 @@ from centrode.numerics.initial_value_problems import (
 )
 from centrode.numerics.integrators import Integrator
 from centrode.numerics.python_functions import Function, python_function
+from centrode.numerics.search import zero_between
 
 if TYPE_CHECKING:
     from centrode.dynamics.forward_dynamics.change_points import Detour
     from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
-
-# motions without contacts seek no instants, and SciPy takes longer to load than they take
-_optimize = partial(import_module, "scipy.optimize")
 
 _END = CONTROLS.index(END)
 ROOT = 1e-16
@@ -99,8 +96,7 @@ MOST_AT_ONCE = 100
 """Events one after the other at the same instant, beyond which none of them leads on."""
 
 
-@dataclass(frozen=True)
-class ContactForces:
+class ContactForces(NamedTuple):
     """What contacts feel at one state.
 
     Attributes
@@ -114,6 +110,7 @@ class ContactForces:
     reactions : (kept drives, rows), impulses of kept drives by impulses along the rows
     rates : of the kept drives
     conditions : values of the user's events
+    is_late : whether speeds alone are those behind an impact, and forces and accelerations still those before it
     """
 
     values: Array
@@ -127,6 +124,7 @@ class ContactForces:
     reactions: Array
     rates: Array
     conditions: Array
+    is_late: bool = False
 
 
 def contact_function(
@@ -164,6 +162,13 @@ def contact_function(
     outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
     graph = Graph({name: as_node(x) for name, x in outputs.items()})
     return python_function(graph, [TIME, *problem.parameters, *problem.carried])
+
+
+def row_of(state: Array) -> Array:
+    """The time and what is carried (1 + carried) of a state of one motion."""
+    row = state[HEADER - 1 :, 0].copy()
+    row[0] = state[0, 0]
+    return row
 
 
 @dataclass
@@ -207,6 +212,23 @@ class EventWatch:
     def _places(self) -> dict[str, int]:
         """Place of what is carried in a state."""
         return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried)}
+
+    @cached_property
+    def _mode_places(self) -> dict[str, list[int]]:
+        """Places in a state of what tells the modes, contact by contact."""
+        names = self.integration.names
+        told = {"active": names.active, "sense": names.senses, "held": names.held}
+        return {what: [self._places[one] for one in of_each] for what, of_each in told.items()}
+
+    @cached_property
+    def _work_places(self) -> list[int]:
+        """Places in a state of the works, those of contacts last."""
+        return [self._places[name] for name in self.integration.names.works]
+
+    @cached_property
+    def _releases(self) -> list[float]:
+        """Instants at which clamps let go [s]."""
+        return [c.until for c in self.contacts if c.kind == CLAMP and isinstance(c.until, float)]
 
     @cached_property
     def _guard_rows(self) -> Array:
@@ -279,12 +301,10 @@ class EventWatch:
         return started
 
     def _set(self, state: Array, what: str, number: int, value: float) -> None:
-        names = {"active": "active", "sense": "senses", "held": "held"}
-        state[self._places[getattr(self.integration.names, names[what])[number]], 0] = value
+        state[self._mode_places[what][number], 0] = value
 
     def _get(self, state: Array, what: str, number: int) -> float:
-        names = {"active": "active", "sense": "senses", "held": "held"}
-        return float(state[self._places[getattr(self.integration.names, names[what])[number]], 0])
+        return state.item(self._mode_places[what][number])
 
     # where it is
 
@@ -302,7 +322,7 @@ class EventWatch:
         watched = [int(row) for row in rows]
         column, single = found[:, 0], watched[0]
         # both ends are known already
-        known = {begin: 1.0, end: float(np.min(state[rows, 0]))}
+        known = {begin: 1.0, end: min(state.item(row) for row in watched)}
 
         def at(time: float) -> float:
             value = known.get(time)
@@ -315,7 +335,7 @@ class EventWatch:
             return min(column.item(row) for row in watched)
 
         low = begin
-        if float(np.min(before[rows - HEADER + 1])) <= 0.0:
+        if min(before.item(row - HEADER + 1) for row in watched) <= 0.0:
             # a guard that begins at zero rises first, where it does not pass it at once
             low = end
             for _halving in range(HALVINGS):
@@ -328,11 +348,13 @@ class EventWatch:
                 return start.copy(), frozenset(int(k) for k in passed)
         final = end
         if low < end:
-            final = float(_optimize().brentq(at, low, end, xtol=ROOT, rtol=8.9e-16))
+            final = zero_between(at, low, end, ROOT)
         if not final > begin:
             return start.copy(), frozenset(int(k) for k in passed)
         ends[0] = final
         attempt()
+        if len(watched) == 1:
+            return found.copy(), frozenset((int(passed[0]),))
         least = found[rows, 0]
         due = [int(k) for k, value in zip(passed, least, strict=True) if value <= self._due_below(int(k))]
         if not due:
@@ -417,8 +439,7 @@ class EventWatch:
         if self._at_once > MOST_AT_ONCE:
             what = _("at {time:.9g} s events follow one another without end").format(time=time)
             raise MotionError("[simulation]", what, _("look at the stops and frictions there"))
-        row = np.concatenate([[time], found[HEADER:, 0]])
-        ends = False
+        row, ends = row_of(found), False
         for number in due:
             guard = self.guards[number]
             if guard.kind == CONDITION:
@@ -446,8 +467,7 @@ class EventWatch:
 
     def next_release(self, time: float, end: float) -> float:
         """The next instant at which a clamp lets go, or the end [s]."""
-        times = [c.until for c in self.contacts if c.kind == CLAMP and isinstance(c.until, float)]
-        return min([one for one in times if time < one < end], default=end)
+        return min([one for one in self._releases if time < one < end], default=end)
 
     def release(self, state: Array, time: float) -> Array:
         """The state behind the instant at which clamps let go."""
@@ -485,7 +505,7 @@ class EventWatch:
     def _closed(self, state: Array) -> Array:
         """The state with everything that follows from its modes."""
         problem = self.integration.problem
-        carried = [float(x) for x in state[HEADER:, 0]]
+        carried = state[HEADER:, 0].tolist()
         if INDEPENDENCE in problem.carried:
             carried[problem.carried.index(INDEPENDENCE)] = 0.0
         closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
@@ -493,7 +513,7 @@ class EventWatch:
         # what is passed already is none: a guard at zero counts from there on
         rows = self._guard_rows
         state[rows, 0] = np.maximum(state[rows, 0], 0.0)
-        if state[self._places[GUARD], 0] >= 2.0:
+        if state.item(self._places[GUARD]) >= 2.0:
             state[self._places[GUARD]] -= 2.0
         return state
 
@@ -532,14 +552,24 @@ class EventWatch:
         rows = [self._rows[k] for k in numbers]
         signs = np.array([-taken[k] or 1.0 for k in numbers])
         is_stop = np.array([self.contacts[k].kind == STOP for k in numbers])
-        matrix = signs[:, None] * felt.mobility[rows][:, rows] * signs
-        before = signs * felt.speeds[numbers]
-        before[[k not in hits for k in numbers]] = 0.0
+        if len(numbers) == 1:
+            # one alone, as nearly always: views of it are taken in a fraction of the time
+            (k,), (row,) = numbers, rows
+            matrix, before = felt.mobility[row : row + 1, row : row + 1], signs * felt.speeds[k : k + 1]
+        else:
+            matrix = signs[:, None] * felt.mobility[rows][:, rows] * signs
+            before = signs * felt.speeds[numbers]
+            before[[k not in hits for k in numbers]] = 0.0
         restitution = [self.contacts[k].restitution for k in numbers]
         impulses, after = impulses_of_impact(matrix, before, restitution, is_stop)
         self._apply(state, felt, numbers, signs * impulses, 0.5 * impulses * (before + after))
         settled: dict[int, float] = {}
-        behind = self._feel(time, state[HEADER:, 0].tolist())
+        if self._bounces(hits, grounded):
+            own = slice(rows[0], rows[0] + 1) if len(rows) == 1 else rows
+            speeds = felt.speeds + felt.mobility[:, own] @ (signs * impulses)
+            behind = felt._replace(speeds=speeds, is_late=True)
+        else:
+            behind = self._feel(time, state[HEADER:, 0].tolist())
         for k in numbers:
             if k in hits:
                 settled[k] = 0.0 if k in grounded else self._rest_of_impacts(state, behind, k, hits[k])
@@ -565,14 +595,20 @@ class EventWatch:
                 self._set(state, "active", k, taken[k])
         return behind
 
+    def _bounces(self, hits: Iterable[int], grounded: set[int]) -> bool:
+        """Whether all that hits flies off whatever forces there are, so that only speeds are needed behind it."""
+        has_rows = len(self._rows) == len(self.contacts)
+        return has_rows and all(self.contacts[k].restitution >= 1.0 and k not in grounded for k in hits)
+
     def _apply(
         self, state: Array, felt: ContactForces, numbers: Sequence[int], impulses: Array, works: Array
     ) -> None:
         """Change speeds by impulses along rows, and note the works of both."""
         names, rows = self.integration.names, [self._rows[k] for k in numbers]
         first = self._places[names.speeds[0]]
-        state[first : first + len(names.speeds), 0] += felt.shifts[:, rows] @ impulses
-        works_at = [self._places[name] for name in names.works]
+        shifts = felt.shifts[:, rows[0] : rows[0] + 1] if len(rows) == 1 else felt.shifts[:, rows]
+        state[first : first + len(names.speeds), 0] += shifts @ impulses
+        works_at = self._work_places
         count, kept = len(self.contacts), len(felt.rates)
         driven = len(self.integration.equations.controls)
         for k, work in zip(numbers, works, strict=True):
@@ -645,7 +681,9 @@ class EventWatch:
                     rests = abs(float(felt.speeds[k])) <= slow
                     if rests and not opens and self._touching(felt, k, bound):
                         held[k] = bound
-        forces = self._held_forces(state, felt, held, let_go)
+        if held and felt.is_late:
+            felt = self._feel(float(state[0, 0]), state[HEADER:, 0].tolist())
+        forces = self._held_forces(state, felt, held, let_go) if held else {}
         time = float(state[0, 0])
         for k in self._rows:
             contact, active = self.contacts[k], before[k]

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from centrode.dynamics.forward_dynamics.change_points import Detour, HalfCircles
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function
+from centrode.dynamics.forward_dynamics.event_steps import EventWatch, contact_function, row_of
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
@@ -214,7 +214,7 @@ class MotionIntegration:
         events: list[Event] = []
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
-            if len(rows) != room:
+            if not len(rows):
                 rows = np.empty((room, len(kept[0][0])))
             pause = duration if watch is None else watch.next_release(float(state[0, 0]), duration)
             parameters[CONTROLS.index(END), 0] = pause
@@ -222,7 +222,8 @@ class MotionIntegration:
             attempts += int(state[2, 0])
             written = int(state[3, 0])
             steps += written
-            kept.append(rows[:written].copy())
+            kept.append(rows[:written])
+            rows = rows[written:]
             time, size = float(state[0, 0]), float(state[1, 0])
             if progress is not None:
                 progress(time)
@@ -231,14 +232,14 @@ class MotionIntegration:
                 kept[-1] = kept[-1][:-1]
                 before = next(some[-1] for some in reversed(kept) if len(some))
                 row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
-                kept += [row[None], np.concatenate([state[:1, 0], state[HEADER:, 0]])[None]]
+                kept += [row[None], row_of(state)[None]]
                 if ends:
                     ended = CONDITION_ENDS
                     break
                 continue
             if watch is not None and time >= pause and pause < duration:
                 state = watch.release(state, time)
-                kept.append(np.concatenate([state[:1, 0], state[HEADER:, 0]])[None])
+                kept.append(row_of(state)[None])
                 continue
             if time >= duration:
                 break
