@@ -68,14 +68,18 @@ const path = (line: Point[]): string => line.map(([x, y], k) => `${k ? "L" : "M"
 
 async function begin(): Promise<void> {
   const root = document.getElementById("gears")!;
-  if (refusal) {
+  if (refusal && !token) {
     root.textContent = refusal;
     return;
   }
   const problems = make("p", { id: "problems" });
   problems.setAttribute("role", "status");
-  let lost = "";
-  const line = new Line(() => { problems.textContent = lost; problems.className = ""; });
+  let lost = refusal; // a page that is loaded again has kept its token, which a new server does not take
+  const line = new Line(() => {
+    problems.textContent = lost;
+    problems.className = "";
+    if (!problems.isConnected) root.append(problems);
+  });
   const words = (await line.ask("words")).words as Record<string, string>;
   lost = words.lost!;
   document.title = words.title!;
