@@ -13,6 +13,7 @@ from tools.source_programs import COMPILER
 import centrode as ct
 from centrode.errors import InputError, NotComputedYet
 from centrode.export.fmi import FmuProgram, fmu_program
+from centrode.export.fmi_archive import Fmu
 from centrode.model.examples import example_text
 from samples import ALL
 
@@ -32,7 +33,7 @@ TOLERANCE = 1e-8
 MOMENT = 2.0
 
 
-def compiled(fmu: FmuProgram, folder: Path) -> str:
+def compiled(fmu: Fmu, folder: Path) -> str:
     """The FMU with a binary for this machine."""
     assert COMPILER is not None
     source, library = folder / f"{fmu.name}.c", folder / f"{fmu.name}.so"
@@ -62,6 +63,7 @@ def test_free_motions_are_those_of_a_simulation(name: str, tmp_path: Path) -> No
     course = ct.simulate(mechanism)
     point = next(point for point in reversed(ct.motion(mechanism).point.values))
     fmu = fmu_program(mechanism, [], [f"position {point} {axis}" for axis in "xy"], name=name)
+    assert isinstance(fmu, FmuProgram)
     file = compiled(fmu, tmp_path)
     assert validate_fmu(file) == []
     times, drive = course.time.values, course.drive_value.values[:, 0]
