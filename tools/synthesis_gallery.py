@@ -49,8 +49,8 @@ def main() -> None:
             out = Path(folder) / "out"
             command = [sys.executable, "-m", "centrode", "synthesise", f"{name}.toml", "--out", str(out)]
             subprocess.run(command, cwd=REQUESTS, check=True, stdout=subprocess.DEVNULL)
-            with Image.open(out / figure) as drawn:
-                drawn = drawn.convert("RGB")
+            with Image.open(out / figure) as written:
+                drawn = written.convert("RGB")
                 drawn.thumbnail(SIZE, Image.Resampling.LANCZOS)
                 drawn.quantize(COLOURS).save(FOLDER / f"{name}.png", optimize=True)
 

@@ -149,9 +149,10 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
     start = float(answer.drive[0]) if len(answer.drive) else 0.0
     places = motion(mechanism, at=[start]).position.isel(sample=0)
     points = {
-        str(name): _place(complex(*places.sel(point=name).to_numpy())) for name in places.point.to_numpy()
+        str(name): _place(complex(*places.sel(point=name).to_numpy().tolist()))
+        for name in places.point.to_numpy()
     }
-    points |= {str(name): _place(complex(*place)) for name, place in mechanism.frame.points.items()}
+    points |= {str(name): _place(complex(x, y)) for name, (x, y) in mechanism.frame.points.items()}
     return {
         "facts": facts,
         "curve": [_place(one) for one in answer.curve[::EVERY]],

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeAlias
 
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
@@ -255,6 +255,11 @@ class LinksFmu:
         return archive_of(self, binaries)
 
 
+def _given_effort(effort: Node, _algebra: Any, _time: Any, _value: Any, _speed: Any) -> Any:
+    """The law of an effort that an input gives: whatever time, value and speed are."""
+    return effort
+
+
 def _input(number: int) -> str:
     return f"input {number}"
 
@@ -291,7 +296,7 @@ def free_fmu(
     efforts = []
     for number, driven in enumerate(mechanism.motion_parameter.drives):
         node = driven.sense * variable(_input(number))
-        efforts.append(DriveEffort(driven.name, lambda _m, _t, _q, _v, node=node: node, frozenset()))
+        efforts.append(DriveEffort(driven.name, partial(_given_effort, node), frozenset()))
     fmu = LinksFmu(
         mechanism,
         replace(equations, loads=(*equations.loads, *free_loads_of(mechanism, (), efforts))),

@@ -577,8 +577,8 @@ class EventWatch:
         if resting:
             # the rest of infinitely many impacts at once: their sum is that of one without restitution
             now, more = signs * behind.speeds[numbers], np.zeros(len(numbers))
-            own = matrix[resting][:, resting]
-            more[resting] = np.linalg.lstsq(own, -now[resting], rcond=1e-11)[0]
+            among = matrix[resting][:, resting]
+            more[resting] = np.linalg.lstsq(among, -now[resting], rcond=1e-11)[0]
             then = now + matrix @ more
             self._apply(state, behind, numbers, signs * more, 0.5 * more * (now + then))
             behind = self._feel(time, state[HEADER:, 0].tolist())
