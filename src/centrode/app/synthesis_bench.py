@@ -15,6 +15,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from centrode import render
 from centrode.errors import InputError
 from centrode.kinematics.motion import motion
@@ -152,7 +154,10 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
         str(name): _place(complex(*places.sel(point=name).to_numpy().tolist()))
         for name in places.point.to_numpy()
     }
-    points |= {str(name): _place(complex(x, y)) for name, (x, y) in mechanism.frame.points.items()}
+    frame = np.array(list(mechanism.frame.points.values()), dtype=np.float64).reshape(-1, 2).tolist()
+    points |= {
+        name: _place(complex(x, y)) for name, (x, y) in zip(mechanism.frame.points, frame, strict=True)
+    }
     return {
         "facts": facts,
         "curve": [_place(one) for one in answer.curve[::EVERY]],
