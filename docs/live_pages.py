@@ -78,7 +78,7 @@ class PageGallery(LivePages):
             except NotComputedYet:
                 without.append(name)
                 continue
-            picture = Path(self.env.srcdir) / "images" / "gallery" / f"{name}.png"
+            picture = _picture(Path(self.env.srcdir) / "images", name)
             target = Path(self.env.app.outdir) / FOLDER / picture.name
             target.write_bytes(picture.read_bytes())
             cards += (
@@ -91,6 +91,12 @@ class PageGallery(LivePages):
         )
         listed = ", ".join(f"<code>{name}</code>" for name in without)
         return [nodes.raw("", f"{grid}<p>{listed}</p>", format="html")]
+
+
+def _picture(images: Path, name: str) -> Path:
+    """The picture of a mechanism in the gallery: a still one, one that moves, or that of its first mode."""
+    places = (f"gallery/{name}.png", f"gallery/{name}.gif", f"{name}-mode.gif")
+    return next(images / place for place in places if (images / place).exists())
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -7,14 +7,14 @@ interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; point
 type Answer = Record<string, any> & { id: number; error?: { message: string; repair: string } };
 
 const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')!.content || "{}") as { token?: string; refused?: string };
-const LANGUAGE = "centrode.language";
+const TOKEN = "centrode.token", LANGUAGE = "centrode.language"; // the workbench keeps them by these names too
 const chosen = (): string | null => { try { return localStorage.getItem(LANGUAGE); } catch { return null; } };
 const wished = new URLSearchParams(location.search).get("language") ?? chosen() ?? navigator.language.slice(0, 2);
 const language = ["en", "ru", "uk"].includes(wished) ? wished : "en";
 document.documentElement.lang = language;
-const token = given.token ?? sessionStorage.getItem("token") ?? "";
+const token = given.token ?? sessionStorage.getItem(TOKEN) ?? "";
 if (given.token) {
-  sessionStorage.setItem("token", given.token);
+  sessionStorage.setItem(TOKEN, given.token);
   history.replaceState(null, "", location.pathname);
 }
 
