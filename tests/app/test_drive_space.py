@@ -158,7 +158,11 @@ def test_a_drive_without_a_law_is_moved_by_hand_and_simulated(ask):
     assert "free coordinate" in answer["problems"][0]["message"]
     scene = answer["scene"]
     assert all(point["at"] for point in scene["points"])
-    assert [name for name, there in scene["topics"].items() if there is True] == ["simulate"]
+    assert [name for name, there in scene["topics"].items() if there is True] == [
+        "simulate",
+        "equilibrium",
+        "modes",
+    ]
     assert all(point["handles"]["move"] for point in scene["points"] if point["kind"] != "fixed")
     by_laws = ask("read", text=example_text("five-bar-pendulum"))["scene"]
     assert [one["at"] for one in scene["points"]] == [one["at"] for one in by_laws["points"]]

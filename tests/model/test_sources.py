@@ -58,7 +58,7 @@ def test_a_name_a_file_and_the_description_give_the_same(tmp_path: Path) -> None
         (lambda: ct.cam("crank-rocker"), "this describes a linkage, not a cam"),
         (lambda: ct.motion(ct.example("valve-cam")), "takes a mechanism.*type PlateCam"),
         (lambda: ct.cam(ct.example("crank-rocker")), "takes a cam.*type Mechanism"),
-        (lambda: ct.report(3), "takes a mechanism or a cam.*type int"),
+        (lambda: ct.report(3), "takes a mechanism, a cam.*type int"),
         (lambda: ct.reactions("nowhere.toml"), "nowhere.toml"),
     ],
 )

@@ -38,6 +38,8 @@ DATASETS: dict[str, Callable[[], xr.Dataset]] = {
     "reduce": lambda: ct.reduce(PRESS, 37),
     "flywheel": lambda: ct.steady_motion(PRESS, 37),
     "simulate": lambda: simulation_results(ct.example("six-bar-press-run-up"), 9, duration="1 s").simulation,
+    "equilibrium": lambda: ct.equilibrium(ct.example("double-pendulum")),
+    "modes": lambda: ct.modes(ct.example("double-pendulum")),
     "reactions": lambda: ct.reactions(PRESS, 37),
     "shaking": lambda: ct.shaking(PRESS, 37),
     "centres": lambda: ct.instant_centres(ct.motion(PRESS, at=[2.0, 3.0])),

@@ -95,6 +95,9 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
         description = ct.example(name)
         subject = "mechanism" if isinstance(description, ct.Mechanism) else "cam"
         for topic in TOPICS:
+            # what is on request alone may refuse loads that others take; an improvement needs what to improve
+            if topic.document.on_request or topic.name == "improve":
+                continue
             if topic.subject == subject and (topic.concerns is None or topic.concerns(description)):
                 yield f"{topic.name} of {name}", topic.view(result(topic.name, name))
 
