@@ -21,7 +21,9 @@ def frame_bytes(header: Mapping[str, Any], arrays: Mapping[str, npt.ArrayLike]) 
     parts: list[bytes] = []
     offset = 0
     for name, values in arrays.items():
-        array = np.ascontiguousarray(values, dtype="<f4")
+        # what is beyond single precision is beyond any picture: it becomes infinite
+        with np.errstate(over="ignore"):
+            array = np.ascontiguousarray(values, dtype="<f4")
         described[name] = {"shape": list(array.shape), "offset": offset}
         parts.append(array.tobytes())
         offset += array.size
