@@ -15,7 +15,7 @@ from centrode.model.drives import Drive
 from centrode.model.gears import Gear
 from centrode.model.links import Frame, Guide, Link, Rolling, Track
 from centrode.model.loads import AnyLoad
-from centrode.model.motors import motor_problems
+from centrode.model.motor_checks import motor_problems
 from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
