@@ -257,7 +257,7 @@ def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, Mot
 
 
 def _row(name: str, rotation: Rotation, results: MotionResults) -> VariantRow:
-    status = LOCKS if results.unreached else COMPUTED
+    status = LOCKS if results.unreached_samples else COMPUTED
     cause = cause_of(rotation)
     return VariantRow(
         name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status

@@ -37,7 +37,7 @@ from centrode.analysis.rotatability.tours import (
     tour_of,
     watched_members,
 )
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
@@ -250,7 +250,7 @@ def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
     return tuple(limits)
 
 
-def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFound:
+def _limit(prepared: Ready, tour: DriveSweep, event: RadicandZero, end: str) -> LimitFound:
     group = prepared.structure.groups[event.group]
     side: Literal["low", "high"] = "low" if end == "low" else "high"
     return LimitFound(

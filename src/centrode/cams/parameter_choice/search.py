@@ -19,8 +19,8 @@ from centrode.cams.parameter_choice.problem import (
     BatchPaths,
     ChoiceProblem,
     Family,
-    Measure,
     Mesh,
+    PathMeasure,
     PathTrial,
 )
 from centrode.cams.path_series import law_of, path_of
@@ -237,7 +237,7 @@ class JudgedDesign:
     angle: float
     bound: float | None = None
 
-    def relative_miss(self, measure: Measure) -> float:
+    def relative_miss(self, measure: PathMeasure) -> float:
         """By which part of the bound it is missed; 0 where it is kept."""
         if self.bound is None:
             return 0.0

@@ -67,7 +67,10 @@ class Sorted:
         """Whether it may be another one for the other sense of motion."""
         effort = self.effort
         return (
-            effort.gate is not None or effort.works is not None or effort.amount.jumps or effort.amount.sensed
+            effort.gate is not None
+            or effort.works is not None
+            or effort.amount.jumps
+            or effort.amount.depends_on_sense
         )
 
     def energy(self, state: State) -> Number:

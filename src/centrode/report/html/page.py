@@ -73,7 +73,7 @@ def _page(report: Report) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
-        f'{elements.drawings.shared()}\n<div class="sheet">\n'
+        f'{elements.drawings.shared_outlines()}\n<div class="sheet">\n'
         f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
         f"<main>\n{main}</main>\n</div>\n"
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
