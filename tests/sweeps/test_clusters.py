@@ -24,7 +24,7 @@ from centrode.cli.main import main
 from centrode.errors import CentrodeError
 from centrode.model.files import mechanism_text
 from centrode.numerics.machine_code.targets import baseline
-from centrode.render.table_spelling import TableSpelling
+from centrode.render.table_files import TableSpelling
 from centrode.report.variants.files import VariantReport, row_of_report_text
 from centrode.report.variants.folders import VariantTask, task_of_text, task_text
 from centrode.sweeps import clusters, designs

@@ -26,7 +26,7 @@ from centrode.chains.kinematic_chains import (
 )
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.pairs import KinematicPair, PairedBody, kinematic_pairs
 
 Unnamed: TypeAlias = Literal["", "higher pairs", "open", "many links", "dimensions"]

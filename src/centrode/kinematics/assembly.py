@@ -35,7 +35,7 @@ from centrode.kinematics.higher_class.system import GroupSystem
 from centrode.kinematics.plan_evaluation import Kinematics, SideChoices
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rounding import ROUNDED, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import (
     Constraint,

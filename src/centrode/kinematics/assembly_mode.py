@@ -20,7 +20,7 @@ from centrode.kinematics.plan_evaluation import (
 from centrode.locale import _
 from centrode.model.settings import Display, shown_as
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from centrode.quantities import terminal_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions, TrackContact

@@ -47,7 +47,7 @@ from centrode.kinematics.quick_turns import QuickTurns
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet, Newton

@@ -15,7 +15,7 @@ from centrode.kinematics.path import Path, nearest_node
 from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import Rounded
+from centrode.numerics.rounding_bounds import Rounded
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure

@@ -45,7 +45,7 @@ from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rooms import GivenRoom
-from centrode.numerics.rounding import SAFETY
+from centrode.numerics.rounding_bounds import SAFETY
 from centrode.structure.constraints import Constraint, PointInLink, Positions, TrackContact, contact_point
 from centrode.structure.dimensions import Dimensions
 

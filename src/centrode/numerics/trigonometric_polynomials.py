@@ -20,7 +20,7 @@ from typing import TypeAlias
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, apply_operation, as_node
 from centrode.numerics.graphs import topological_order
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.rounding import SAFETY, UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import SAFETY, UNIT_ROUNDOFF
 
 m = EXPRESSIONS
 

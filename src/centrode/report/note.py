@@ -22,7 +22,7 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
-from centrode.render.document.numbering import reference
+from centrode.render.document.captions import reference
 from centrode.render.document.outline import letters_of
 from centrode.report.citations import cite_sources
 from centrode.topics.order import PARTS

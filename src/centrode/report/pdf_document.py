@@ -33,8 +33,8 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.figures import picture_width
-from centrode.render.document.numbering import number_blocks
 from centrode.render.document.numbers import NO_BREAK
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote

@@ -89,7 +89,7 @@ def spoken_formula(formula: str) -> str:
     >>> spoken_formula("x_(B) = frac(l, 2) cos phi")
     'x sub B equals l over 2 cosine φ'
     """
-    return _shortened_text(_FormulaReader(check_formula(formula)).sentence())
+    return _shortened_text(_SpokenFormulaReader(check_formula(formula)).sentence())
 
 
 def spoken_relations(block: FormulaBlock) -> list[str]:
@@ -112,7 +112,7 @@ def _shortened_text(text: str, room: int = LONGEST) -> str:
     return text if len(text) <= room else f"{text[: room - 1]}…"
 
 
-class _FormulaReader:
+class _SpokenFormulaReader:
     """Reads a formula from left to right; what it does not know it reads as it is written."""
 
     def __init__(self, formula: str) -> None:

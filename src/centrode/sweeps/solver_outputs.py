@@ -18,7 +18,7 @@ from centrode.dynamics.kinetostatics.reaction_expressions import LARGEST_GAIN, R
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.errors import InputError, Status
-from centrode.kinematics.machine_code.event_screening import SAFE
+from centrode.kinematics.machine_code.event_free_mechanisms import SAFE
 from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, SLACK_AT_SAMPLES, Known, closes
 from centrode.kinematics.machine_code.frame_plan import FramePlan, FreeMechanism, SampleScan, screening_of
 from centrode.kinematics.machine_code.trace import Traced, Untraceable

@@ -23,7 +23,7 @@ from centrode.model.files import value_at, with_values
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import value_text
 from centrode.model.units import read_quantity
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import kind_of, unit_of
 from centrode.sweeps.solver import Solver, solver
 from centrode.synthesis.measures import Array, Measure, measure_of

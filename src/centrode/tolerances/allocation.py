@@ -25,7 +25,7 @@ from centrode.model.limits_and_fits import GRADES, standard_tolerance, widest_gr
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.tolerances import is_size, kind_of_dimension
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import unit_of
 from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms
 from centrode.tolerances.dimension_limits import SIGMAS, DimensionLimits, check_paths, length_paths

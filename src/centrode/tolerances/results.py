@@ -20,7 +20,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.tolerances import Limits, ToleranceOutput
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import unit_of
 from centrode.sweeps.outputs import identifier
 from centrode.tolerances.assembly_in_limits import AssemblyInLimits, first_stop

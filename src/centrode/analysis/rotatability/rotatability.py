@@ -43,7 +43,7 @@ from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.assur import name_of
 
 

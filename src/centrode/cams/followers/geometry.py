@@ -25,7 +25,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import Extremes, Function, extremes, roots
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.follower_cam import PlateCam

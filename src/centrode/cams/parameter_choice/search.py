@@ -30,7 +30,7 @@ from centrode.model.cam import CONSTANT, MEASURED, OF_WHEELS, POINT, Cam, vary_c
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.reading import FrozenMap
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
 #

@@ -59,7 +59,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.quantities import status_word
 from centrode.structure.plan import Structure
 

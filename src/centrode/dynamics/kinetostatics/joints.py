@@ -14,7 +14,7 @@ from centrode.dynamics.wrenches import Vector, Wrench
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.expressions import Node
-from centrode.numerics.rounding import SAFETY
+from centrode.numerics.rounding_bounds import SAFETY
 from centrode.structure.constraints import (
     AngleDrive,
     Constraint,

@@ -25,7 +25,7 @@ from centrode.dynamics.loads import (
 )
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.state import DriveMotion, State
 from centrode.dynamics.steady_motion.cycle import NODES, resolve_panels
 from centrode.errors import InputError, MotionError, Status

@@ -20,7 +20,7 @@ from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
 from centrode.errors import STATUSES_OF_MOTION, InputError, Status

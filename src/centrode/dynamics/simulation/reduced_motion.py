@@ -13,7 +13,7 @@ import xarray as xr
 
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.equation_of_motion import (
     CREEP,
     NEAR_LIMIT,

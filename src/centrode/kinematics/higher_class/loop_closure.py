@@ -21,7 +21,7 @@ from centrode.kinematics.higher_class.elimination import Follow, pattern_of
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import Rounded
+from centrode.numerics.rounding_bounds import Rounded
 from centrode.structure.constraints import FRAME, Constraint, Entity, PointInLink, PointOnGuide, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

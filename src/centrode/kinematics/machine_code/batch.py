@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.outputs import (
     RESIDUAL,

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import SLACK
+from centrode.kinematics.machine_code.event_free_mechanisms import SLACK
 from centrode.kinematics.machine_code.frame_code import FrameAnswer, FrameSlot, Task, frame_text
 from centrode.kinematics.machine_code.frame_kernels import (
     COSINES,

@@ -2,7 +2,7 @@
 
 Kernels of a batch have mechanisms in their lanes, and of one mechanism would fill a vector with copies. Here the lanes
 are the nodes of the mesh, then the samples; what is reduced over them is reduced by NumPy. What is judged, and what
-is written, are the same expressions as in a batch (`event_screening`, `outputs`).
+is written, are the same expressions as in a batch (`event_free_mechanisms`, `outputs`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,12 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import SLACK, EventScreening, mesh_places, sparse_nodes
+from centrode.kinematics.machine_code.event_free_mechanisms import (
+    SLACK,
+    EventScreening,
+    mesh_places,
+    sparse_nodes,
+)
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (
     AWAY,

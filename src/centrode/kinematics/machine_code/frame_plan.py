@@ -10,7 +10,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.machine_code.frame_calls import CalledFrames, CalledMemory
 from centrode.kinematics.machine_code.frame_kernels import (
     COSINES,

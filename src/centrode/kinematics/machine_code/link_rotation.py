@@ -36,7 +36,7 @@ from centrode.kinematics.machine_code.variables import (
 )
 from centrode.kinematics.samples import ORDERS
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.rounding import SAFETY, UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import SAFETY, UNIT_ROUNDOFF
 from centrode.numerics.scans import Reduction
 from centrode.numerics.trigonometric_polynomials import (
     TrigonometricPolynomial,

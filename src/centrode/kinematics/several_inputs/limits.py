@@ -26,7 +26,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.arrays import ARRAYS
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 

@@ -27,8 +27,8 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.figures import picture_width
-from centrode.render.document.numbering import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
 from centrode.report.spoken_formulas import spoken_picture

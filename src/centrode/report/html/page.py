@@ -8,7 +8,7 @@ from functools import cache
 
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import Moving, Report
-from centrode.render.document.numbering import number_blocks
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.html.elements import Elements, formulas_in
 from centrode.report.html.fonts import embedded_font, font_letters

@@ -28,7 +28,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
-from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.render.table_files import PLAIN, TableSpelling
 from centrode.sweeps.clusters import ClusterSource, open_cluster, wanted_libraries
 from centrode.sweeps.parameter_studies import analysis_results, check_analysis
 from centrode.topics.presentation import sheet_of
