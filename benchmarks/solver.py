@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
-from itertools import count, cycle
+from itertools import cycle
 from statistics import median
 
 import numpy as np

@@ -10,7 +10,8 @@ import functools
 import operator
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from functools import cached_property
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -37,7 +38,7 @@ from centrode.geometry.plane import is_literal_zero
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
 from centrode.model.kept_values import KeptValues
-from centrode.numerics.executors import MACHINE_CODE, runner
+from centrode.numerics.executors import MACHINE_CODE, Run, runner
 from centrode.numerics.expressions import Operand, as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import Scan, room_of
@@ -68,6 +69,25 @@ def reactions_by_kernels(solved: Solved, burden: MassesAndLoads, pace: InputMoti
 # Numbers at every sample as machine code.
 
 
+class NumberPlace(NamedTuple):
+    """Which number of a motion, of its drive or of a solution a variable stands for."""
+
+    kind: str
+    number: int = 0
+    order: int = 0
+
+    @classmethod
+    def of(cls, name: str) -> NumberPlace:
+        """That of a variable of this name."""
+        kind, *numbers = name.split()
+        return cls(kind, *map(int, numbers))
+
+    @property
+    def name(self) -> str:
+        """Name of the variable."""
+        return f"{self.kind} {self.number} {self.order}"
+
+
 @dataclass(frozen=True)
 class SampleKernel:
     """Arrays of nodes of one sample, each under its name, from numbers that are known at every sample."""
@@ -83,16 +103,20 @@ class SampleKernel:
         outputs = {f"output {k}": node for k, node in enumerate(flat)}
         return cls(arrays, Scan(tuple(Graph(outputs).variables), (), outputs))
 
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """Names of what has to be known."""
-        return self.scan.parameters
+    @cached_property
+    def inputs(self) -> list[NumberPlace]:
+        """What has to be known."""
+        return [NumberPlace.of(name) for name in self.scan.parameters]
+
+    @cached_property
+    def _run(self) -> Run:
+        return runner(self.scan, MACHINE_CODE, lanes_inside=True)
 
     def run(self, known: Sequence[Array]) -> dict[str, Array]:
         """The arrays, samples behind, from numbers (n) in the order of the inputs."""
         rows = np.stack(known)
         room = room_of(len(self.scan.outputs), 1, rows.shape[1])
-        runner(self.scan, MACHINE_CODE, lanes_inside=True)(rows, None, out=room, steps=1)
+        self._run(rows, None, out=room, steps=1)
         found, first = {}, 0
         for name, array in self.nodes.items():
             found[name] = room[first : first + array.size, 0].reshape(*array.shape, rows.shape[1])
@@ -164,7 +188,7 @@ class TracedEquations:
         """The solved equations, with variables for the solution."""
         system, solution = self.system, {}
         for k, unknown in enumerate(system.scheme.unknowns):
-            value = variable(f"{SOLUTION} {k}")
+            value = variable(NumberPlace(SOLUTION, k).name)
             solution[unknown] = value * system.scale if system.equilibrium.by_moment(unknown[0]) else value
         return ForceSystem(system, solution | system.at_hosts(solution, self.outer, 0.0), self.outer)
 
@@ -195,7 +219,7 @@ def _state(solved: Solved) -> State:
     """The state at one sample, with variables for its numbers."""
 
     def of_kind(kind: str) -> Any:
-        return lambda k: [variable(f"{kind} {k} {order}") for order in range(ORDERS)]
+        return lambda k: [variable(NumberPlace(kind, k, order).name) for order in range(ORDERS)]
 
     kinds = {kind: of_kind(kind) for kind in MOTION}
     time, parameter, rate = (variable(name) for name in (TIME, PARAMETER, RATE))
@@ -214,18 +238,18 @@ class KnownNumbers:
     pace: InputMotion
     solution: Array | None = None
 
-    def rows(self, names: Iterable[str]) -> list[Array]:
-        """The named numbers."""
-        return [self._row(*name.split()) for name in names]
+    def rows(self, places: Iterable[NumberPlace]) -> list[Array]:
+        """The numbers at places."""
+        return [self._row(*place) for place in places]
 
-    def _row(self, kind: str, place: str = "0", order: str = "0") -> Array:
-        k, axes, moving = int(place), self.solved.layout.axes, self.pace.moving
+    def _row(self, kind: str, k: int, order: int) -> Array:
+        axes, moving = self.solved.layout.axes, self.pace.moving
         if kind == SOLUTION:
             assert self.solution is not None
             row: Array = self.solution[k]
             return row
         if kind in MOTION:
-            of_kind: Array = getattr(self.solved, MOTION[kind])[int(order), 0]
+            of_kind: Array = getattr(self.solved, MOTION[kind])[order, 0]
             return of_kind[:, k // axes, k % axes] if kind == "point" else of_kind[:, k]
         drive = {TIME: moving.time, PARAMETER: moving.parameter, RATE: moving.rate}
         return drive.get(kind, self.pace.acceleration)

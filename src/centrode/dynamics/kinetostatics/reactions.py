@@ -222,6 +222,12 @@ def _unchanging(mechanism: Mechanism) -> tuple[Scheme, Teeth, tuple[JointSide, .
     return Scheme.of(ready(mechanism).structure), Teeth.of(mechanism), sides_of(mechanism)
 
 
+@kept_by_mechanism(most=16)
+def _acting(mechanism: Mechanism) -> tuple[MassesAndLoads, tuple[Contact, ...]]:
+    """Masses and loads as forces, and where friction is: the same at all positions."""
+    return MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
+
+
 def _check_size(scheme: Scheme, samples: int) -> None:
     most = GREATEST_MATRICES // (scheme.size * len(scheme.unknowns))
     if samples > most:
@@ -656,7 +662,7 @@ def reactions(
     """
     mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
-    burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
+    burden, contacts = _acting(mechanism)
     check_motion(motion)
     _check_given(motion, speed, acceleration, at)
     if motion == "real":
