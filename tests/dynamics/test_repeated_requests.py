@@ -23,7 +23,7 @@ MOVING = (
     "six-bar-press",
     "geared-five-bar",
     "two-link-arm",
-    "elliptic-trammel",
+    "shaper",
     "jansen-leg",
 )
 LOADED = ("six-bar-press", "six-bar-press-run-up", "in-line-four-bar", "vibrating-screen", "door-closer")

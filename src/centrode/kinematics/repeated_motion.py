@@ -21,6 +21,8 @@ _kernels = functools.partial(importlib.import_module, "centrode.kinematics.machi
 
 WORTH_COMPILING = 20
 """Requests from which on a motion is compiled: until then the arrays took as long as that takes."""
+MOST_SAMPLES = 10_000
+"""Of more samples the numbers themselves take the arrays their time, and not the calls."""
 MOST_KEPT = 16
 
 
@@ -54,5 +56,7 @@ _kept = KeptValues[RepeatedMotion](MOST_KEPT)
 
 def repeated_motion(ready: Ready, span: SampleGrid) -> RepeatedMotion:
     """The motion of a description at samples, kept since it was requested first."""
+    if len(span.parameter) > MOST_SAMPLES:
+        return RepeatedMotion()
     grid = b"".join(x.tobytes() for x in (span.time, span.parameter, span.rate, span.second_rate))
     return _kept.get(ready.mechanism, grid, RepeatedMotion)

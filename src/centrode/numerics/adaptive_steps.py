@@ -24,11 +24,11 @@ ERROR_ORDER = 7
 ROWS = STAGES + 1 + len(MORE_A)
 
 
-def _padded(rows: Sequence[Sequence[float]]) -> list[Array]:
+def _rows_of(rows: Sequence[Sequence[float]]) -> list[Array]:
     return [np.array(row) for row in rows]
 
 
-_A, _MORE_A = _padded(A), _padded(MORE_A)
+_A, _MORE_A = _rows_of(A), _rows_of(MORE_A)
 _B, _FIFTH, _THIRD, _DENSE = np.array(B), np.array((*FIFTH, 0.0)), np.array((*THIRD, 0.0)), np.array(DENSE)
 
 

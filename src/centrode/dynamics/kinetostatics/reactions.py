@@ -223,7 +223,7 @@ def _unchanging(mechanism: Mechanism) -> tuple[Scheme, Teeth, tuple[JointSide, .
 
 
 @kept_by_mechanism(most=16)
-def _acting(mechanism: Mechanism) -> tuple[MassesAndLoads, tuple[Contact, ...]]:
+def _forces_that_act(mechanism: Mechanism) -> tuple[MassesAndLoads, tuple[Contact, ...]]:
     """Masses and loads as forces, and where friction is: the same at all positions."""
     return MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
 
@@ -662,7 +662,7 @@ def reactions(
     """
     mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
-    burden, contacts = _acting(mechanism)
+    burden, contacts = _forces_that_act(mechanism)
     check_motion(motion)
     _check_given(motion, speed, acceleration, at)
     if motion == "real":

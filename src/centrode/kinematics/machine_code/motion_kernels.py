@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from centrode.errors import Status
 from centrode.kinematics.hinge_angles import moving_hinges
-from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.outputs import RESIDUAL, SINES, Writer, nodes_of, solved_of
 from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
 from centrode.kinematics.machine_code.variables import (
@@ -53,7 +53,7 @@ class MotionKernels:
     Attributes
     ----------
     ready : the mechanism, fit for the samples
-    kept : name of an extreme -> constraint whose greatest residual it is, and whether that has no unit
+    constraints : name of an extreme -> constraint whose greatest residual it is, and whether that has no unit
     values : name -> (1,), the mechanism's numbers that stand as variables
     """
 
@@ -62,7 +62,7 @@ class MotionKernels:
     plan: Traced
     judging: EventScreening
     writer: Writer
-    kept: Mapping[str, tuple[Kept, bool]]
+    constraints: Mapping[str, tuple[Kept, bool]]
     values: Mapping[str, Array]
 
     @classmethod
@@ -84,7 +84,7 @@ class MotionKernels:
         check_size(plan.solved.layout, 1, len(span.parameter))
         names = tuple(dict.fromkeys([*varied.names, SCALE]))
         judging = EventScreening(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
-        judged, kept = _judged(plan, judging)
+        judged, constraints = _extremes(plan, judging)
         writer = Writer(
             nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE, sparing=True, judged=judged
         )
@@ -92,7 +92,7 @@ class MotionKernels:
         of_residuals = Writer({"all": plan.solved.residual}, writer.places, MACHINE_CODE)
         if plan.steps or not (writer.alike and of_residuals.alike):
             return None
-        return cls(ready, span, plan, judging, writer, kept, values)
+        return cls(ready, span, plan, judging, writer, constraints, values)
 
     def solve(self) -> Solved | None:
         """The motion; None where it has events, which the arrays look for."""
@@ -137,9 +137,10 @@ class MotionKernels:
         """The constraint that is kept worst, the first of equal ones."""
         scale = float(self.ready.kinematics.numbers.scale)
         sizes = {
-            name: judged[name][0] / (1.0 if angular else scale) for name, (_one, angular) in self.kept.items()
+            name: judged[name][0] / (1.0 if angular else scale)
+            for name, (_one, angular) in self.constraints.items()
         }
-        return self.kept[max(sizes, key=sizes.__getitem__)][0]
+        return self.constraints[max(sizes, key=sizes.__getitem__)][0]
 
 
 def _with_one_variable(numbers: Dimensions) -> Dimensions:
@@ -154,7 +155,7 @@ def _with_one_variable(numbers: Dimensions) -> Dimensions:
     return numbers.map_numbers(lift)
 
 
-def _judged(
+def _extremes(
     plan: Traced, judging: EventScreening
 ) -> tuple[dict[str, LaneExtreme], dict[str, tuple[Kept, bool]]]:
     """Extremes over the samples: greatest residual, least slack of radicands, greatest residual of each constraint."""
