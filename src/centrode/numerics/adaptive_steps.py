@@ -154,5 +154,7 @@ class AdaptiveSteps:
         ahead = self.rates(self.t + trial * self.direction, self.y + trial * self.direction * self._rate)
         bend = size(np.asarray(ahead) - self._rate) / trial
         least = max(rate, bend)
-        second = max(1e-6, trial * 1e-3) if least <= 1e-15 else (0.01 / least) ** (1.0 / (ERROR_ORDER + 1))
+        second = (
+            max(1e-6, trial * 1e-3) if least <= 1e-15 else float((0.01 / least) ** (1.0 / (ERROR_ORDER + 1)))
+        )
         return min(100.0 * trial, second, whole, self.longest)
