@@ -19,6 +19,8 @@ from centrode.model.links import Link
 from centrode.model.mechanism import Mechanism
 
 Array = npt.NDArray[np.float64]
+MOST_KNOWN = 0.999
+"""Share of the samples at which a peer has to have positions."""
 HAS_KINEPY = find_spec("kinepy") is not None
 HAS_FOURBARHINGE = find_spec("fourbarhinge") is not None
 
@@ -118,11 +120,15 @@ def _choose_signs(system: Any, bodies: dict[str, Any], crank: Array, motion: xr.
         system._formula = True
         with np.errstate(all="ignore"):
             system.solve_kinematics(crank.copy())
-        apart = [
-            np.abs(bodies[link].origin.T - motion["position"].sel(point=point).to_numpy()).max()
-            for link, point in (("CD", "C"), ("DH", "D"), ("slider", "H"))
-        ]
-        if np.max(apart) < 1e-6:  # not so with NaN among them
+        apart = np.concatenate(
+            [
+                np.abs(bodies[link].origin.T - motion["position"].sel(point=point).to_numpy())
+                for link, point in (("CD", "C"), ("DH", "D"), ("slider", "H"))
+            ]
+        )
+        # where its cosine is rounded beyond one the peer has no position: at one sample of thousands
+        known = np.isfinite(apart)
+        if known.mean() > MOST_KNOWN and np.max(apart[known]) < 1e-6:
             return
     raise ValueError("no assembly of the peer is that of the motion")
 

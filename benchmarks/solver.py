@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
-from itertools import count
+from itertools import cycle
 from statistics import median
 
 import numpy as np
@@ -51,16 +51,15 @@ def moves() -> Iterator[Row]:
 
 def _move(name: str, most: float | None) -> Row:
     mechanism = ct.example(name)
-    lever, steps = ct.solver(mechanism, SIX[name], SAMPLES), count()
-
-    def values() -> list[float]:
-        return [x * (1.0 + 1e-7 * (next(steps) % 1000)) for x in lever.own]
+    lever = ct.solver(mechanism, SIX[name], SAMPLES)
+    # made beforehand: six numbers take an interpreter a tenth of a move, and who moves a mechanism has his own
+    values = cycle([[x * (1.0 + 1e-7 * k) for x in lever.own] for k in range(1000)])
 
     def changed() -> object:
-        return ct.motion(ct.with_value(mechanism, lever.free[0], values()[0]), SAMPLES)
+        return ct.motion(ct.with_value(mechanism, lever.free[0], next(values)[0]), SAMPLES)
 
     tasks = {
-        "move": lambda: lever.move(values()),
+        "move": lambda: lever.move(next(values)),
         "direct": _direct(lever),
         "called": _called(lever),
         "motion": changed,

@@ -11,7 +11,7 @@ import pytest
 import centrode as ct
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, Scheme, inverse_of
-from centrode.dynamics.kinetostatics.reactions import checks_of, find
+from centrode.dynamics.kinetostatics.reactions import ReactionNumbers, checks_of, find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import DriveMotion, State
 from centrode.dynamics.steady_motion.steady import SETTLED
@@ -82,16 +82,18 @@ def test_checks_tell_of_wrong_reactions() -> None:
     burden = MassesAndLoads.of(prepared.mechanism)
     found = find(solved, burden, input_motion_of(solved, burden))
     rates = found.pace.moving.rate[:, None]
-    assert max(checks_of(found, rates).values()) <= 1e3 * EPS
+    assert max(checks_of(ReactionNumbers.of(found), rates).values()) <= 1e3 * EPS
     for unknown, names in (
         ((PointInLink("O", "OA"), 0), {"equilibrium_residual", "frame_residual"}),
         ((PointInLink("A", "OA"), 1), {"equilibrium_residual"}),
     ):
         off = {**found.forces.multipliers, unknown: found.forces.multipliers[unknown] * 1.001}
         wrong = replace(found, forces=ForceSystem(found.forces.system, off, found.forces.outer))
-        assert {name for name, share in checks_of(wrong, rates).items() if share > 1e-5} == names
+        assert {
+            name for name, share in checks_of(ReactionNumbers.of(wrong), rates).items() if share > 1e-5
+        } == names
     wrong = replace(found, parts={**found.parts, "balancing": found.parts["balancing"] * 1.001})
-    assert checks_of(wrong, rates)["power_residual"] > 1e-5
+    assert checks_of(ReactionNumbers.of(wrong), rates)["power_residual"] > 1e-5
 
 
 def test_limits_are_singular_and_what_lies_beyond_is_open() -> None:

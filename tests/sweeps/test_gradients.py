@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.model.kept_values import KeptValues
 from centrode.numerics import machine_code
 from centrode.sweeps import sweep_plans
 from centrode.sweeps.folds import Fold, Slopes, States
-from centrode.sweeps.kept_plans import KeptValues
 from centrode.sweeps.sweep import read_sweep
 from drives import five_bar
 from mechanisms import EPS, four_bar

@@ -18,6 +18,7 @@ from centrode.kinematics.hinge_angles import HINGE_ANGLES, hinge_rates, moving_h
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.repeated_motion import repeated_motion
 from centrode.kinematics.sample_index import drive_coordinates, label_coordinates
 from centrode.kinematics.samples import ORDERS
 from centrode.kinematics.solve import Progress, Solved, grid_of, solve
@@ -417,6 +418,8 @@ def _solve_range(
     progress: Progress | None,
     room: GivenRoom | None = None,
 ) -> Solved:
+    if numbers is None and room is None and progress is None:
+        return repeated_motion(ready, span).solve(ready, span)
     if numbers is None:
         return solve(ready, span, progress=progress, given=room)
     # angles at hinges take their turns from the search of the arrays

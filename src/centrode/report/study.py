@@ -322,6 +322,11 @@ class ReportStudy:
         )
 
     @property
+    def has_run(self) -> bool:
+        """Whether what `run` computes is there already."""
+        return isinstance(self._made.get("study"), MotionResults)
+
+    @property
     def motion_of_forces(self) -> MotionOfDrive:
         """The motion at which forces are computed: as wished, else the real one of a machine that has one."""
         wished = self.wishes.motion

@@ -71,6 +71,9 @@ def result_of(topic: Topic, study: ReportStudy) -> Any:
             return document.add_instants(done, **arguments)
         if document.motion:
             arguments["motion"] = study.motion_of_forces
+        if not arguments and study.has_run and topic.name in study.results:
+            # a part of the run, which computed it without wishes too
+            return study.results[topic.name]
         return topic.compute(study.description, **arguments)
 
     return study.once(("result", topic.name), compute)

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.files import kind_at, value_at
+from centrode.model.kept_values import KeptValues
 from centrode.model.load_paths import ROOMS
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
@@ -26,7 +27,6 @@ from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps.drawn_designs import DrawnDesigns
-from centrode.sweeps.kept_plans import KeptValues
 
 # What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
 

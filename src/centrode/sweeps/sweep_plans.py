@@ -17,6 +17,7 @@ from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
+from centrode.model.kept_values import KeptValues
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.numerics import machine_code
@@ -28,7 +29,6 @@ from centrode.sweeps import designs
 from centrode.sweeps.arrays import Results, SweepTask
 from centrode.sweeps.designs import Design, unit_of
 from centrode.sweeps.executors import Executor, executor_of
-from centrode.sweeps.kept_plans import KeptValues
 from centrode.sweeps.outputs import Outputs, Reduce, asked_of, with_slopes
 from centrode.sweeps.result_columns import StreamedColumns
 from centrode.sweeps.sample_tables import Tables

@@ -55,6 +55,7 @@ from centrode.structure.rank import in_order, match, strong_components
 
 Unknown: TypeAlias = tuple[Constraint, int]
 """One scalar equation: a constraint and its row there."""
+Mask: TypeAlias = npt.NDArray[np.bool_]
 Axis: TypeAlias = tuple[str, int]
 """A point and one of its two coordinates."""
 
@@ -119,6 +120,11 @@ class Scheme:
     def size(self) -> int:
         """Number of equations."""
         return sum(self.blocks)
+
+    def blocks_of(self, filled: Mask) -> tuple[int, ...]:
+        """The blocks, where a matrix with numbers in the `filled` places (equations, unknowns) has them; else none."""
+        block = np.repeat(np.arange(len(self.blocks)), self.blocks)
+        return () if filled[:, : self.size][block[:, None] < block].any() else self.blocks
 
     @cached_property
     def first_rows(self) -> dict[Entity, int]:
@@ -504,7 +510,6 @@ def _host_link(constraint: Constraint, mechanism: Mechanism) -> str | None:
 # Matrices inverted at many positions, with what rounding makes of each.
 
 Array: TypeAlias = npt.NDArray[np.float64]
-Mask: TypeAlias = npt.NDArray[np.bool_]
 EPSILON = 2.0**-52
 
 
@@ -737,10 +742,8 @@ class Kinetostatics:
             # something
             if self.equilibrium.by_moment(unknown[0]):
                 matrix[:, column] *= self.scale
-        block = np.repeat(np.arange(len(scheme.blocks)), scheme.blocks)
-        apart = not filled[:, : scheme.size][block[:, None] < block].any()
-        blocks = scheme.blocks if apart else ()
-        return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))), blocks)
+        ordered = np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1)))
+        return inverse_of(ordered, scheme.blocks_of(filled))
 
     def right_side(self, outer: Iterable[Wrench]) -> Array:
         """Forces and moments [N] on the links, as (equations, 1, n)."""

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Unknown
+from centrode.dynamics.kinetostatics.equations import ForceSystem, Inverse, Kinetostatics, Unknown
 from centrode.dynamics.wrenches import Vector, Wrench
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
@@ -239,10 +239,10 @@ MOMENTS = ("guide_moment", "gear_moment", "balancing")
 """Reactions that may be moments: measured by the greatest length beside forces."""
 
 
-def reaction_status(system: Kinetostatics, status: Codes) -> Codes:
+def reaction_status(inverse: Inverse, status: Codes) -> Codes:
     """The motion's statuses (n), and `singular` where rounding leaves no digit of the reactions."""
     codes = status.copy()
-    lost = system.inverse.useless[0]
+    lost = inverse.useless[0]
     codes[lost & ((status == Status.OK) | (status == Status.CUT_OFF))] = Status.SINGULAR
     return codes
 

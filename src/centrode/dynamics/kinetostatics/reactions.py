@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+import importlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -69,16 +71,22 @@ from centrode.kinematics.motion import (
     vocabulary_variable,
 )
 from centrode.kinematics.preparation import ready
-from centrode.kinematics.sample_index import selectable
+from centrode.kinematics.repeated_motion import repeated_motion
+from centrode.kinematics.sample_index import label_coordinates
 from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism, kept_by_mechanism
+from centrode.numerics.expressions import EXPRESSIONS
 from centrode.structure.constraints import Entity
 
 # Reactions at the samples of a motion, as plain arrays with what they come from.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+# what machine code needs is not loaded for reactions that are requested once
+_kernels = functools.partial(importlib.import_module, "centrode.dynamics.kinetostatics.reaction_kernels")
+
 GREATEST_MATRICES = 30_000_000
 """Numbers in all matrices of one result: with their inverses some 1 GB."""
 
@@ -116,6 +124,46 @@ class ReactionSolution:
     friction: WithFriction | None = None
 
 
+@dataclass(frozen=True)
+class ReactionNumbers:
+    """Reactions of a motion as numbers alone, whatever computed them.
+
+    Attributes
+    ----------
+    held : links and pins that the centre of a sphere holds
+    parts : name -> reactions, inertia forces, forces and moments on the frame (samples, ...)
+    balances : what is missing to the equilibrium of the bodies, and of the frame (n), and the size that measures it (n)
+    moment : (n), of loads and inertia along the path's parameter by virtual work
+    undetermined : name -> mask (...) of reactions that nothing determines
+    status : (n)
+    loss : (n), bound on the relative rounding error
+    """
+
+    pace: InputMotion
+    sides: tuple[JointSide, ...]
+    held: tuple[str, ...]
+    parts: dict[str, Array]
+    balances: Mapping[str, tuple[Array, Array]]
+    moment: Array
+    undetermined: Mapping[str, Mask]
+    status: npt.NDArray[np.int8]
+    loss: Array
+    friction: WithFriction | None = None
+
+    @classmethod
+    def of(cls, found: ReactionSolution) -> ReactionNumbers:
+        """The numbers of solved equations."""
+        parts = found.parts | totals_of(found.forces, found.outer.inertia)
+        held: tuple[str, ...] = ()
+        if "centre_force" in parts:
+            parts["joint_moment"] = joint_moments(found, parts["joint_force"])
+            held = tuple(centre_forces(found.forces))
+        return cls(
+            found.pace, found.sides, held, parts, balances_of(found.forces, found.outer.pulls), found.outer.moment[0],
+            found.undetermined, found.status, found.forces.system.inverse.loss[0], found.friction,
+        )  # fmt: skip
+
+
 def find(
     solved: Solved, burden: MassesAndLoads, pace: InputMotion, contacts: Sequence[Contact] = ()
 ) -> ReactionSolution:
@@ -132,7 +180,7 @@ def find(
     outer = outer_of(state, burden, pace.acceleration, state.exists)
     forces = system.forces(outer.pulls)
     # without friction first: what acts decides neither on statuses nor on what is undetermined
-    status = reaction_status(system, solved.status[0])
+    status = reaction_status(system.inverse, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))
     undetermined = undetermined_parts(system, sides, status, residual)
     parts = with_radial_forces(reactions_of(forces, sides), forces, sides)
@@ -174,6 +222,12 @@ def _unchanging(mechanism: Mechanism) -> tuple[Scheme, Teeth, tuple[JointSide, .
     return Scheme.of(ready(mechanism).structure), Teeth.of(mechanism), sides_of(mechanism)
 
 
+@kept_by_mechanism(most=16)
+def _forces_that_act(mechanism: Mechanism) -> tuple[MassesAndLoads, tuple[Contact, ...]]:
+    """Masses and loads as forces, and where friction is: the same at all positions."""
+    return MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
+
+
 def _check_size(scheme: Scheme, samples: int) -> None:
     most = GREATEST_MATRICES // (scheme.size * len(scheme.unknowns))
     if samples > most:
@@ -184,15 +238,14 @@ def _check_size(scheme: Scheme, samples: int) -> None:
 # What a mechanism does to its frame: all of it, and the part of inertia that shakes it.
 
 
-def totals_of(found: ReactionSolution) -> dict[str, Array]:
+def totals_of(forces: ForceSystem, inertia: Sequence[InertiaForce]) -> dict[str, Array]:
     """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
-    inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
-    origin = found.forces.system.equilibrium.origin
+    samples, origin = forces.system.shape[-1], forces.system.equilibrium.origin
     moments = [components(action.moment) for action in inertia]
     return {
         "inertia_force": tables([action.force for action in inertia], len(origin), samples),
         "inertia_moment": _moments(moments, len(origin), samples),
-        **frame_totals(found.forces, found.outer.inertia),
+        **frame_totals(forces, inertia),
     }
 
 
@@ -231,27 +284,32 @@ def joint_moments(found: ReactionSolution, forces: Array) -> Array:
 Number: TypeAlias = Any
 
 
-def checks_of(found: ReactionSolution, rates: Array) -> dict[str, float]:
+BALANCES = ("equilibrium_residual", "frame_residual")
+
+
+def checks_of(found: ReactionNumbers, rates: Array) -> dict[str, float]:
     """Worst residuals over all samples that are ok, each over the greatest force or moment of its sample, or power.
 
     `rates` (samples, drives) are the speeds of the drives.
     """
-    return {
-        "equilibrium_residual": _worst(found, *_equilibrium(found.forces)),
-        "frame_residual": _worst(found, *_frame(found)),
-        "power_residual": _worst(found, *_power(found, rates)),
-    }
-
-
-def _worst(found: ReactionSolution, missing: Array, size: Array) -> float:
     good = found.status == Status.OK
+    checks = {name: _worst(good, *balance) for name, balance in found.balances.items()}
+    return checks | {"power_residual": _worst(good, *_power(found, rates))}
+
+
+def balances_of(forces: ForceSystem, outer: Sequence[Wrench]) -> dict[str, tuple[Array, Array]]:
+    """Name of a check -> what is missing to equilibrium at each sample, and the size that it is measured by."""
+    return dict(zip(BALANCES, (body_balance(forces), frame_balance(forces, outer)), strict=True))
+
+
+def _worst(good: Mask, missing: Array, size: Array) -> float:
     with np.errstate(all="ignore"):
         # nothing missing where nothing acts counts as zero, not as 0/0
         share = np.where(missing == 0.0, 0.0, missing / size)
     return float(np.max(share[good], initial=0.0))
 
 
-def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
+def body_balance(forces: ForceSystem) -> tuple[Array, Array]:
     """Residual of the equilibrium of pins and links (n), and the greatest force (n), by which it is measured.
 
     The centre of a sphere bears what the forces on a link leave, so that there its moments alone tell.
@@ -270,37 +328,47 @@ def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
         turning += components(pull.moment)
     missing = _greatest_size([x for left in sums.values() for x in left], samples)
     size = _greatest_size(acting, samples)
-    return missing, np.maximum(size, _greatest_size(turning, samples) / system.scale)
+    return missing, _greater(size, _greatest_size(turning, samples) / system.scale)
 
 
 def _greatest_size(parts: Sequence[Number], samples: int) -> Array:
-    """The greatest size (n) of some numbers over the samples; plain zeros are none."""
+    """The greatest size (n) of some numbers over the samples, of nodes a node; plain zeros are none."""
     told = [x for x in parts if not (isinstance(x, float) and x == 0.0)]
     if not told:
         return np.zeros(samples)
-    return np.asarray(np.abs(columns(told, samples)).max(axis=1))
+    table = columns(told, samples)
+    if table.dtype == object:
+        return np.array([functools.reduce(EXPRESSIONS.max, map(EXPRESSIONS.abs, table[0]))], dtype=object)
+    return np.asarray(np.abs(table).max(axis=1))
 
 
-def _frame(found: ReactionSolution) -> tuple[Array, Array]:
+def _greater(sizes: Array, others: Array) -> Array:
+    """The greater of two sizes (n), of nodes a node."""
+    if object in (sizes.dtype, others.dtype):
+        return np.array([EXPRESSIONS.max(sizes[0], others[0])], dtype=object)
+    return np.asarray(np.maximum(sizes, others))
+
+
+def frame_balance(forces: ForceSystem, outer: Sequence[Wrench]) -> tuple[Array, Array]:
     """Residual of the frame (n): what it bears less loads and inertia forces; and the greatest force (n)."""
-    forces, scale = found.forces, found.forces.system.scale
+    scale = forces.system.scale
     samples = forces.system.shape[-1]
     origin = forces.system.equilibrium.origin
-    (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(found.outer.pulls, origin)
+    (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(outer, origin)
     short = [x - y for x, y in zip(borne, acting, strict=True)]
     pairs = zip(components(turned), components(turning), strict=True)
     missing = _greatest_size(short, samples)
-    missing = np.maximum(missing, _greatest_size([x - y for x, y in pairs], samples) / scale)
-    pulls = [*forces.on_frame, *found.outer.pulls]
+    missing = _greater(missing, _greatest_size([x - y for x, y in pairs], samples) / scale)
+    pulls = [*forces.on_frame, *outer]
     size = _greatest_size([x for pull in pulls for x in pull.force], samples)
     moments = [x for pull in pulls for x in components(pull.moment_about(origin))]
-    return missing, np.maximum(size, _greatest_size(moments, samples) / scale)
+    return missing, _greater(size, _greatest_size(moments, samples) / scale)
 
 
-def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
+def _power(found: ReactionNumbers, rates: Array) -> tuple[Array, Array]:
     """Power of the drives, and of loads and inertia by virtual work; the greatest of the whole motion."""
     given = found.parts["balancing"] * rates
-    taken = found.outer.moment[0] * found.pace.moving.rate
+    taken = found.moment * found.pace.moving.rate
     good = found.status == Status.OK
     # over the greatest power of the motion: at single samples all powers may vanish together
     greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
@@ -422,16 +490,14 @@ DIMENSIONS = {
 
 
 def reactions_dataset(
-    solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool
+    solved: Solved, burden: MassesAndLoads, found: ReactionNumbers, whole: bool
 ) -> xr.Dataset:
     """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
-    parts = found.parts | totals_of(found)
+    parts = dict(found.parts)
     checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
-    undetermined = _mask_undetermined(parts, found)
-    if "centre_force" in parts:
-        parts["joint_moment"] = joint_moments(found, parts["joint_force"])
+    undetermined = _mask_undetermined(parts, solved.ready.mechanism, found)
     # after the checks, which look at numbers
     for values in parts.values():
         values[absent] = np.nan
@@ -465,7 +531,7 @@ def reactions_dataset(
         group, needed = found.pace.group, parts["balancing"][:, 0]
         variables |= drive_group_variables(group, needed)
         attributes |= driving_attributes(group, needed)
-    return selectable(xr.Dataset(variables, coords=coordinates, attrs=attributes))
+    return xr.Dataset(variables, coords=label_coordinates(coordinates), attrs=attributes)
 
 
 def _dimensions(name: str, values: Array) -> tuple[str, ...]:
@@ -473,7 +539,7 @@ def _dimensions(name: str, values: Array) -> tuple[str, ...]:
     return (*known, "axis") if name in SPATIAL and values.ndim > 1 + len(known) else known
 
 
-def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
+def _statuses(solved: Solved, found: ReactionNumbers) -> dict[str, Variable]:
     motion = judgements_of(solved, ())["status"]
     flags = {
         "flag_values": np.array(list(Status), dtype=np.int8),
@@ -481,15 +547,15 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
     }
     dimensions, values, attributes = vocabulary_variable("reaction_status", ("sample",), found.status)
     # above 1 no digit is left, and how many more than none says nothing
-    loss = found.forces.system.inverse.loss[0]
+    loss = np.minimum(found.loss, 1.0)
     return {
         "status": motion,
         "reaction_status": (dimensions, values, attributes | flags),
-        "reaction_loss": vocabulary_variable("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
+        "reaction_loss": vocabulary_variable("reaction_loss", ("sample",), loss),
     }
 
 
-def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution) -> dict[str, Any]:
+def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionNumbers) -> dict[str, Any]:
     known, mechanism = coordinates_of(solved), solved.ready.mechanism
     wanted = (*coordinates_along(solved), "axis", "guide", "rolling")
     coordinates = {
@@ -500,16 +566,18 @@ def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution
     coordinates["side_point"] = (("side",), np.array([side.point for side in found.sides], dtype=str))
     coordinates["side_link"] = (("side",), np.array([side.body for side in found.sides], dtype=str))
     if "centre_force" in found.parts:
-        coordinates["held"] = labels_of(tuple(centre_forces(found.forces)))
+        coordinates["held"] = labels_of(found.held)
     if mechanism.gears:
         coordinates["gear"] = labels_of(tuple(gear.id for gear in mechanism.gears))
         coordinates["gear_body"] = labels_of(GEAR_BODIES)
     return coordinates
 
 
-def _mask_undetermined(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
+def _mask_undetermined(parts: dict[str, Array], mechanism: Mechanism, found: ReactionNumbers) -> list[str]:
     """Put NaN where nothing determines a reaction; the names of these."""
-    names = _names(found)
+    if not found.undetermined:
+        return []
+    names = _names(mechanism, found)
     said: list[str] = []
     for part, felt in found.undetermined.items():
         if part == "balancing":
@@ -517,18 +585,19 @@ def _mask_undetermined(parts: dict[str, Array], found: ReactionSolution) -> list
         for k, mask in enumerate(felt):
             if np.any(mask):
                 parts[part][:, k] = np.nan
+                if part == "joint_force" and "joint_moment" in parts:
+                    parts["joint_moment"][:, k] = np.nan
                 said.append(names[part][k])
     return list(dict.fromkeys(said))
 
 
-def _names(found: ReactionSolution) -> dict[str, list[str]]:
-    mechanism: Mechanism = found.forces.system.scheme.structure.mechanism
+def _names(mechanism: Mechanism, found: ReactionNumbers) -> dict[str, list[str]]:
     guides = [guide.id for guide in mechanism.guides]
     gears = [f"gear {gear.id}" for gear in mechanism.gears]
     wheels = [f"rolling {wheel.id}" for wheel in mechanism.rolling]
     return {
         "joint_force": [side.label for side in found.sides],
-        "centre_force": [f"centre on {name}" for name in centre_forces(found.forces)],
+        "centre_force": [f"centre on {name}" for name in found.held],
         "guide_force": [f"guide {guide}" for guide in guides],
         "guide_normal": [f"guide {guide}" for guide in guides],
         "guide_moment": [f"moment of guide {guide}" for guide in guides],
@@ -593,7 +662,7 @@ def reactions(
     """
     mechanism = mechanism_of(mechanism)
     mechanism = mechanism if friction else without_friction(mechanism)
-    burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
+    burden, contacts = _forces_that_act(mechanism)
     check_motion(motion)
     _check_given(motion, speed, acceleration, at)
     if motion == "real":
@@ -605,8 +674,13 @@ def reactions(
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
     prepared = ready(mechanism)
     span = grid_of(prepared, samples, start, stop, at)
-    solved = solve(prepared, span)
+    course = repeated_motion(prepared, span)
+    solved = course.solve(prepared, span)
     pace = input_motion_of(solved, burden) if speed is None else given_motion(solved, speed, acceleration)
+    if course.is_compiled and not contacts:
+        found = _kernels().reactions_by_kernels(solved, burden, pace)
+        if found is not None:
+            return reactions_dataset(solved, burden, found, at is None)
     return reactions_at(solved, burden, pace, contacts, at is None)
 
 
@@ -669,4 +743,5 @@ def reactions_at(
 
     `whole` where its samples are a range, over which works have a sense.
     """
-    return reactions_dataset(solved, burden, find(solved, burden, pace, contacts), whole)
+    found = ReactionNumbers.of(find(solved, burden, pace, contacts))
+    return reactions_dataset(solved, burden, found, whole)

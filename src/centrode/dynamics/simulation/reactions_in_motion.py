@@ -82,7 +82,7 @@ def reactions_in_motion(free: FreeMotion, course: Trajectory) -> ReactionsInMoti
     system = Kinetostatics.of(scheme, free.equations.numbers, state, Teeth.of(mechanism))
     with np.errstate(all="ignore"):
         forces = system.forces(_acting(free, state))
-        status = reaction_status(system, np.full(len(course.time), Status.OK.value, dtype=np.int8))
+        status = reaction_status(system.inverse, np.full(len(course.time), Status.OK.value, dtype=np.int8))
         residual = float(np.max(course.position_residual, initial=0.0)) / system.scale
         undetermined = undetermined_parts(system, sides, status, residual)
         parts = reactions_of(forces, sides)

@@ -298,7 +298,10 @@ def _pad_lanes(call: Call, width: int) -> Call:
 
     # repeated numbers send no lane to the C library that the call would not send there itself
     def pad(rows: Array) -> Array:
-        return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, width - call.lanes)), mode="edge"))
+        filled = np.empty((len(rows), width), rows.dtype)
+        filled[:, : call.lanes] = rows
+        filled[:, call.lanes :] = rows[:, -1:]
+        return filled
 
     outputs = np.empty((*call.outputs.shape[:2], width), call.outputs.dtype)
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)

@@ -1,4 +1,4 @@
-"""What is kept between sweeps of one description: values found by the description itself, the newest ones only.
+"""Values that are kept between requests of one description, found by the description itself: the newest ones only.
 
 Descriptions are frozen, so the object says all: nothing is compared, and no digest is computed.
 """
