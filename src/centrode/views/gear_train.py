@@ -81,10 +81,10 @@ def sheet(results: GearTrainResults) -> Sheet:
     )
 
 
-def _teeth(train: AnyTrain) -> Text:
+def teeth_text(train: AnyTrain) -> Text:
     """Numbers of teeth: of a planet with one rim once, stages of two carriers apart."""
     if isinstance(train, CarrierSeries | ClosedTrain):
-        return Joined(tuple(_teeth(stage) for stage in train.stages), "; ")
+        return Joined(tuple(teeth_text(stage) for stage in train.stages), "; ")
     if isinstance(train, OrdinaryTrain):
         return Joined(tuple(_numbers(pair) for pair in train.pairs), "; ")
     sun, planet, _other, fixed = train.teeth
@@ -106,7 +106,7 @@ def _facts(results: GearTrainResults) -> Iterator[Fact]:
         Sentence("trains with this ratio"),
         Sentence("more than {count}", count=count) if results.found.more else count,
     )
-    yield Fact(Sentence("numbers of teeth"), _teeth(train))
+    yield Fact(Sentence("numbers of teeth"), teeth_text(train))
     ratio = Sentence(
         "{ratio}, deviation {share} %",
         ratio=Number(results.whole_ratio(train)),
