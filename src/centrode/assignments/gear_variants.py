@@ -90,13 +90,13 @@ def gear_variants(
     given = read_gear_variants(described, table)
     results = []
     for number, variant in enumerate(given, start=1):
-        results.append(_computed(variant))
+        results.append(_compute(variant))
         if progress is not None:
             progress(number, len(given))
     return GearVariants(described, tuple(results))
 
 
-def _computed(variant: GearVariant) -> GearVariantResults:
+def _compute(variant: GearVariant) -> GearVariantResults:
     described = variant.described
     if described is None:
         return GearVariantResults(variant, None, variant.refusal)

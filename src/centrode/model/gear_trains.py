@@ -84,14 +84,14 @@ class MeshLosses(DescriptionPart):
     internal: Annotated[float, _share(0.5, 1.0)] = 0.99
 
 
-def _member(value: object) -> str:
+def _read_member(value: object) -> str:
     if value not in SET_MEMBERS:
         what = _("{value} is no member of a planetary set").format(value=value_text(value))
         raise Problem(what, nearest(value, list(SET_MEMBERS)) if isinstance(value, str) else "")
     return str(value)
 
 
-def _joined(value: object) -> tuple[tuple[str, str], tuple[str, str]]:
+def _read_joined(value: object) -> tuple[tuple[str, str], tuple[str, str]]:
     """Two pairs of members, those of set 1 first."""
     form = _('[["carrier 1", "sun 2"], ["ring 1", "ring 2"]]')
     if not isinstance(value, list | tuple) or len(value) != 2:
@@ -100,7 +100,7 @@ def _joined(value: object) -> tuple[tuple[str, str], tuple[str, str]]:
     for pair in value:
         if not isinstance(pair, list | tuple) or len(pair) != 2:
             raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(pair)))
-        first, second = sorted(map(_member, pair), key=lambda member: member[-1])
+        first, second = sorted(map(_read_member, pair), key=lambda member: member[-1])
         if first[-1] == second[-1]:
             what = _("{first} and {second} belong to one set, which would turn as one body")
             raise Problem(
@@ -125,10 +125,10 @@ class ClosedShafts(DescriptionPart):
     input, output, fixed : a member of the shaft that drives, of that which is driven, of that which is at rest
     """
 
-    joined: Annotated[tuple[tuple[str, str], tuple[str, str]], PlainValidator(_joined)]
-    input: Annotated[str, PlainValidator(_member)]
-    output: Annotated[str, PlainValidator(_member)]
-    fixed: Annotated[str, PlainValidator(_member)]
+    joined: Annotated[tuple[tuple[str, str], tuple[str, str]], PlainValidator(_read_joined)]
+    input: Annotated[str, PlainValidator(_read_member)]
+    output: Annotated[str, PlainValidator(_read_member)]
+    fixed: Annotated[str, PlainValidator(_read_member)]
 
     def shaft(self, member: str) -> Shaft:
         """The members of the shaft that one of them belongs to."""

@@ -417,7 +417,7 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
 def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
     """All teeth of a wheel about its axis."""
     pieces = [
-        piece.on_layer("profile").moved(2 * math.pi * tooth / profile.teeth)
+        piece.on_layer("profile").moved_by(2 * math.pi * tooth / profile.teeth)
         for tooth in range(profile.teeth)
         for piece in whole_tooth(profile)
     ]
@@ -447,9 +447,9 @@ class _TeethInMesh:
         half = math.pi / self.profile.teeth * len(self.angles)
         return _arc(self.centre, diameter / 2, self.up, half)
 
-    def moved(self, piece: OutlinePiece) -> list[OutlinePiece]:
+    def on_all(self, piece: OutlinePiece) -> list[OutlinePiece]:
         """A piece of the tooth on the y axis on each of the teeth."""
-        return [piece.moved(angle, self.centre) for angle in self.angles.tolist()]
+        return [piece.moved_by(angle, self.centre) for angle in self.angles.tolist()]
 
     @property
     def working_flanks(self) -> list[Array]:
@@ -463,7 +463,7 @@ class _TeethInMesh:
             radii = np.hypot(*piece.places.T)
             kept = (radii > ends[0] * (1 - 1e-9)) & (radii < ends[1] * (1 + 1e-9))
             if np.ptp(radii) > 1e-9 * ends[1] and (side * piece.places[:, 0] > 0).all() and kept.sum() > 1:
-                flanks += [moved.places[kept] for moved in self.moved(piece)]
+                flanks += [moved.places[kept] for moved in self.on_all(piece)]
         return flanks
 
 
@@ -493,7 +493,7 @@ def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array
         moved.on_layer(("profile", "shoe")[one.wheel.number])
         for one in teeth
         for piece in whole_tooth(one.profile)
-        for moved in one.moved(piece)
+        for moved in one.on_all(piece)
     ]
     circles = [one.arc(one.wheel.working_pitch) for one in teeth]
     begin, end = pair.action_ends
@@ -539,7 +539,9 @@ def generation_parts(results: GearPairResults) -> tuple[list[OutlinePiece], tupl
     pair, profile = results.geometry, results.profiles[0]
     wheel, step = pair.wheels[0], 2 * math.pi / profile.teeth
     teeth = [
-        piece.on_layer("profile").moved(side * step / 2) for side in (-1, 1) for piece in whole_tooth(profile)
+        piece.on_layer("profile").moved_by(side * step / 2)
+        for side in (-1, 1)
+        for piece in whole_tooth(profile)
     ]
     # The rack meets the tips where it has rolled by about the angle of a tooth and a half.
     rolled = np.linspace(-1.0, 1.0, POSITIONS) * ROLLED * 2 * step

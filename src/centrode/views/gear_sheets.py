@@ -56,9 +56,9 @@ def _diagrams(results: GearPairResults) -> Iterator[ScaledDiagram]:
     for number, title in enumerate(titles):
         curve, note = _within(along, action.sliding[:, number], MOST_SLIDING)
         axis = AxisLabel(symbol=Symbol("ϑ", str(number + 1)))
-        yield ScaledDiagram(_noted(title, note), across, axis, (curve,))
+        yield ScaledDiagram(_title_up_to(title, note), across, axis, (curve,))
     curve, note = _within(along, action.pressure, MOST_PRESSURE)
-    title = _noted(Sentence("Pressure coefficient"), note)
+    title = _title_up_to(Sentence("Pressure coefficient"), note)
     yield ScaledDiagram(title, across, AxisLabel(symbol=Symbol("ϑ", "p")), (curve,))
 
 
@@ -70,7 +70,7 @@ def _within(along: Array, values: Array, most: float) -> tuple[ScaledCurve, floa
     return ScaledCurve(NOTHING, along[kept], values[kept]), most
 
 
-def _noted(title: Sentence, most: float | None) -> Sentence:
+def _title_up_to(title: Sentence, most: float | None) -> Sentence:
     """The title, with the size up to which a curve is drawn."""
     if most is None:
         return title

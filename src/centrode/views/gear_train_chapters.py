@@ -159,7 +159,7 @@ def _willis(train: PlanetaryTrain) -> Iterator[Block]:
         Sentence("Against the carrier the train is an ordinary one. By Willis' method its ratio is")
     )
     lines: list[Line] = [
-        ("u_0", Expression(letters), Expression(numbers, **_used(numbers, values)), Number(own)),
+        ("u_0", Expression(letters), Expression(numbers, **_used_letters(numbers, values)), Number(own)),
         ('u_(1 "H")', Expression("1 - u_0"), Number(float(train.sun_ratio))),
     ]
     if train.driver == "carrier":
@@ -197,7 +197,7 @@ def _conditions(train: PlanetaryTrain) -> Iterator[Block]:
         yield from _assembly(train)
 
 
-def _used(notation: str, values: dict[str, Leaf]) -> dict[str, Leaf]:
+def _used_letters(notation: str, values: dict[str, Leaf]) -> dict[str, Leaf]:
     return {name: value for name, value in values.items() if f"{{{name}}}" in notation}
 
 
