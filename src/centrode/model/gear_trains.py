@@ -93,7 +93,7 @@ def _read_member(value: object) -> str:
 
 def _read_joined(value: object) -> tuple[tuple[str, str], tuple[str, str]]:
     """Two pairs of members, those of set 1 first."""
-    form = _('[["carrier 1", "sun 2"], ["ring 1", "ring 2"]]')
+    form = '[["carrier 1", "sun 2"], ["ring 1", "ring 2"]]'
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     pairs = []

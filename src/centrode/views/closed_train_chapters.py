@@ -54,7 +54,7 @@ def power_flow(train: ClosedTrain) -> Sentence:
         share = Number(train.circulating_power, digits=".4g")
         return Sentence("circulates, {share} of that which drives", share=share)
     if len(train.shafts.shaft(train.shafts.fixed)) == 2:
-        return Sentence("through one set after the other")
+        return Sentence("passes through one set after the other")
     return Sentence("branches over both sets")
 
 
