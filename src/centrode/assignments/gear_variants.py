@@ -15,7 +15,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import load_description
 from centrode.model.gear_pairs import GearPair
 from centrode.model.gear_trains import GearTrain
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 
 @dataclass(frozen=True)

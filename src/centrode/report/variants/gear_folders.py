@@ -11,7 +11,7 @@ from centrode.assignments.gear_variants import GearVariants, gear_variants
 from centrode.files.drafts import draft_folder, remove_file
 from centrode.locale import speaking
 from centrode.model.examples.catalogue import files_of
-from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.render.table_files import PLAIN, TableSpelling
 from centrode.report.document import report
 from centrode.report.files import check_formats, write_report
 from centrode.topics.presentation import sheet_of
