@@ -77,6 +77,78 @@ radius = "5 mm"
     assert np.allclose(np.hypot(*pin.T), tangential / math.cos(angle), rtol=1e-6)
 
 
+ROUGH = """
+[[loads]]
+kind = "friction"
+point = "{point}"
+coefficient = {coefficient}
+radius = "5 mm"
+"""
+ORBIT = """
+[frame.points]
+O = [0, 0]
+[links.arm]
+points = {{ O = [0, 0], A = [{distance}, 0] }}
+[links.planet]
+points = {{ A = [0, 0], B = ["37 mm", 0] }}
+angle = 0.0
+[[gears]]
+links = ["frame", "planet"]
+carrier = "arm"
+pair = "shifted-gear-pair"
+[[loads]]
+kind = "torque"
+link = "planet"
+value = {moment}
+[[drives]]
+link = "arm"
+start = 0
+speed = "{speed} rpm"
+"""
+
+
+@pytest.mark.parametrize("speed", [60, -60])
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_friction_takes_power_in_both_senses_of_rotation_and_of_power(speed: int, moment: float) -> None:
+    """What drives and the load give what both hinges rub away: mu r F |omega| by their whole forces."""
+    text = SHAFTS.replace('speed = "60 rpm"', f'speed = "{speed} rpm"')
+    text = text.format(gear=EXTERNAL, distance=DISTANCE, moment=moment)
+    text += ROUGH.format(point="O", coefficient=0.1) + ROUGH.format(point="C", coefficient=0.2)
+    found = ct.reactions(ct.parse_mechanism(text), samples=3)
+    first = speed * math.tau / 60
+    second = -first / 2
+    forces = {side: np.hypot(*found.joint_force.sel(side=side).to_numpy().T) for side in ("O/OA", "C/CB")}
+    rubbed = 0.005 * (0.1 * forces["O/OA"] * abs(first) + 0.2 * forces["C/CB"] * abs(second))
+    assert (rubbed > 0.5).all()
+    assert np.allclose(found.balancing[:, 0] * first + moment * second, rubbed, rtol=1e-9)
+    # The teeth press the axes apart by the tangential force that is left with friction.
+    pair = ct.gear_pair("shifted-gear-pair").geometry
+    wheel, angle = pair.wheels[1].working_pitch / 2, pair.working_angle
+    helps = math.copysign(1.0, moment * second)
+    tangential = abs(moment) / (wheel + helps * 0.2 * 0.005 / math.cos(angle))
+    assert np.allclose(np.abs(found.tooth_force[:, 0, 1]), tangential, rtol=1e-6)
+    assert np.allclose(found.tooth_radial_force[:, 0, 0], tangential * math.tan(angle), rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [60, -60])
+@pytest.mark.parametrize("moment", [20.0, -20.0])
+def test_friction_takes_power_on_a_carrier_that_moves(speed: int, moment: float) -> None:
+    """A planet on a fixed sun: its pin rubs with the speed against the arm, that of the arm with the arm's own."""
+    text = ORBIT.format(distance=DISTANCE, moment=moment, speed=speed)
+    text += ROUGH.format(point="O", coefficient=0.15) + ROUGH.format(point="A", coefficient=0.15)
+    found = ct.reactions(ct.parse_mechanism(text), samples=5)
+    arm = speed * math.tau / 60
+    planet = arm * (1 + 12 / 24)  # Willis: the sun is wheel 1, of 12 teeth
+    pins = {
+        side: np.hypot(*found.joint_force.sel(side=side).to_numpy().T)
+        for side in map(str, found.side.to_numpy())
+    }
+    on_planet, on_arm = pins["A/planet"], pins["O/frame"]
+    rubbed = 0.15 * 0.005 * (on_planet * abs(planet - arm) + on_arm * abs(arm))
+    assert (rubbed > 0.1).all()
+    assert np.allclose(found.balancing[:, 0] * arm + moment * planet, rubbed, rtol=1e-8)
+
+
 @pytest.mark.parametrize("moment", [20.0, -20.0])
 def test_polygons_have_the_whole_force_between_teeth(moment: float) -> None:
     """The graphic way gives the pins of both wheels as the equations do, the radial part included."""

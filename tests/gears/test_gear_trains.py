@@ -235,6 +235,12 @@ TRAINS = {
     "internal": 'scheme = "internal meshes"\nratio = 40\n',
     "backwards": 'scheme = "single planets"\ndriver = "carrier"\nratio = 0.2\n',
     "series": 'scheme = "two carriers"\nratio = 25\npair_behind = [20, 30]\ntolerance = 0.005\n',
+    "hoist": 'scheme = "closed"\nratio = 24\nshafts = { joined = [["carrier 1", "sun 2"], ["ring 1", "ring 2"]], '
+    'input = "sun 1", output = "ring 1", fixed = "carrier 2" }\n',
+    "gearbox": 'scheme = "closed"\nratio = 2.92\npair_behind = [20, 30]\nshafts = { joined = [["ring 1", "carrier 2"], '
+    '["carrier 1", "ring 2"]], input = "sun 1", output = "carrier 2", fixed = "sun 2" }\n',
+    "circulating": 'scheme = "closed"\nratio = 30\nshafts = { joined = [["sun 1", "sun 2"], '
+    '["carrier 1", "carrier 2"]], input = "sun 1", output = "ring 1", fixed = "ring 2" }\n',
     "pair": 'scheme = "one pair"\nratio = 3\n',
     "pairs": 'scheme = "two pairs"\nratio = 9\noutput_speed = "60 rpm"\npair_behind = [15, 30]\n',
 }
@@ -242,6 +248,8 @@ TRAINS = {
 
 def _link_of(member: str, scheme: str) -> str:
     """The link of the mechanism that a member of the plan is: shafts of an ordinary train carry two wheels."""
+    if scheme == "closed":
+        return member.replace(" ", "-")
     kind, _space, number = member.partition(" ")
     if kind == "wheel" and scheme in ("one pair", "two pairs"):
         return f"shaft-{int(number) // 2 + 1}"
@@ -261,13 +269,13 @@ def test_the_mechanism_of_a_train_moves_as_its_plan_says(name: str) -> None:
     driver = mechanism.drives[0].link
     assert len(results.motions) > 1
     for member in results.motions:
-        link = _link_of(member.member, described.scheme)
+        link = _link_of(member.members[0], described.scheme)
         speeds = motion.angular_velocity.sel(link=link) / motion.angular_velocity.sel(link=driver)
         assert np.allclose(speeds, member.speed / results.input_speed, rtol=1e-12, atol=1e-13), link
         slopes = np.diff(member.velocities) / np.diff(member.places)
         assert np.allclose(slopes, member.speed, rtol=1e-9)
     first, last = motion.angular_velocity.sel(link=driver), results.output_speed / results.input_speed
-    ends = {"crank", "carrier-2", "carrier-1", "wheel-1", "shaft-2", "shaft-3"} & set(
+    ends = {"crank", "carrier-2", "carrier-1", "wheel-1", "shaft-2", "shaft-3", "ring-1"} & set(
         map(str, motion.link.to_numpy())
     )
     assert any(np.allclose(motion.angular_velocity.sel(link=link) / first, last, rtol=1e-12) for link in ends)

@@ -10,6 +10,7 @@ from scipy.optimize import root
 
 from centrode.gears.involutes import involute_curve
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.shift_choice import shift_sum_at
 from centrode.geometry.involute import involute, pressure_angle_of
 
 DEGREE = math.pi / 180
@@ -72,9 +73,36 @@ def test_printed_centre_distances(kind, teeth, module, shifts, angle, distance) 
     assert pair.centre_distance == pytest.approx(distance, abs=5e-5)
 
 
+def test_printed_chordal_thickness() -> None:
+    """SDP/SI, Elements of metric gear technology, table 10-1: m 10, 12 teeth, x 0.3, addendum 13."""
+    wheel = PairGeometry("rack", 10.0, (12, math.inf), (0.3, 0.0)).wheels[0]
+    assert wheel.addendum == pytest.approx(13.0, abs=5e-5)
+    assert wheel.pitch_thickness == pytest.approx(17.8918, abs=5e-5)
+    assert math.degrees(wheel.pitch_thickness / wheel.pitch) == pytest.approx(8.54270, abs=6e-6)
+    chord, height = wheel.chordal_thickness(wheel.pitch)
+    assert chord == pytest.approx(17.8256, abs=5e-5)
+    assert height == pytest.approx(13.6657, abs=5e-5)
+
+
+def test_printed_sum_of_shifts_at_a_centre_distance() -> None:
+    """A worked sheet after ISO 21771:2007: m 3.5, 31 and 30 teeth, distances 114.3447280708 and 116.5."""
+    helix = math.acos(3.5 * 61 / 2 / 114.3447280708)
+    pair = PairGeometry("external", 3.5, (31, 30), (0.0, 0.0), helix)
+    assert math.degrees(pair.transverse.pressure_angle) == pytest.approx(21.2990642859, abs=2e-9)
+    total = shift_sum_at(pair, 116.5)
+    assert total == pytest.approx(0.651877131252, abs=2e-10)
+    working = PairGeometry("external", 3.5, (31, 30), (0.291, total - 0.291), helix)
+    assert math.degrees(working.working_angle) == pytest.approx(23.8707609654, abs=2e-9)
+    assert working.centre_distance == pytest.approx(116.5, abs=1e-10)
+
+
 def test_contact_ratio_without_shift_and_least_teeth() -> None:
     assert PairGeometry("external", 1.0, (17, 34), (0, 0)).contact_ratio == pytest.approx(1.5977, abs=5e-5)
     assert PairGeometry("external", 1.0, (20, 40), (0, 0)).contact_ratio == pytest.approx(1.6352, abs=5e-5)
+    # 2/sin^2(20 deg) teeth are the fewest without undercut.
+    assert PairGeometry("external", 1.0, (18, 40), (0, 0)).wheels[0].least_teeth == pytest.approx(
+        17.0973, abs=5e-5
+    )
     assert PairGeometry("external", 1.0, (12, 40), (0, 0)).wheels[0].least_shift == pytest.approx(
         0.29813, abs=5e-6
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from pathlib import Path
@@ -218,24 +218,50 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     tabulators a comma. Files that the column "topology" names lie beside the table. Raises InputError that names the
     row and the column.
     """
-    if isinstance(table, str | Path):
-        where = Path(table).name
-        headers, rows = _file(Path(table), where)
-    elif isinstance(table, Mapping):
-        what, repair = (
-            _("it is one mapping"),
-            _("give the path of a file, or a list with a mapping for each variant"),
-        )
-        raise InputError(_("table"), what, repair)
-    else:
-        where = _("table")
-        headers, rows = _mappings(table, where)
+    where, headers, rows = table_rows(table)
     try:
         columns = columns_of(topology, headers)
     except InputError as error:
         raise InputError(
             f"{where}, {error.where}" if error.where else where, error.what, error.repair
         ) from None
+    folder = Path(table).parent if isinstance(table, str | Path) else None
+    bases = _Bases(topology, columns, headers, folder)
+    found = [
+        _variant(bases, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
+    ]
+    refuse_equal_names((variant.name for variant in found), where)
+    return tuple(found)
+
+
+def refuse_equal_names(names: Iterable[str], where: str) -> None:
+    """Raise InputError for two variants of one name: folders are named after them, and may know no capital letters."""
+    seen: set[str] = set()
+    for name in names:
+        if name.casefold() in seen:
+            what = _("variant {name} occurs twice").format(name=value_text(name))
+            raise InputError(where, what, _("give each a different name"))
+        seen.add(name.casefold())
+
+
+Row: TypeAlias = tuple[int, list[object]]
+"""Number of a row in its file, and its cells."""
+
+
+def table_rows(table: Table) -> tuple[str, list[str], list[Row]]:
+    """What messages call a table, its headers and its rows; InputError where it has none, or too many."""
+    if isinstance(table, Mapping):
+        what, repair = (
+            _("it is one mapping"),
+            _("give the path of a file, or a list with a mapping for each variant"),
+        )
+        raise InputError(_("table"), what, repair)
+    if isinstance(table, str | Path):
+        where = Path(table).name
+        headers, rows = _file(Path(table), where)
+    else:
+        where = _("table")
+        headers, rows = _mappings(table, where)
     if not rows:
         raise InputError(where, _("it has no variants"), _("write one row below the headers for each"))
     if len(rows) > reading.TABLE_ROWS:
@@ -243,23 +269,7 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
             most=reading.TABLE_ROWS, count=len(rows)
         )
         raise InputError(where, what, _("split it into several"))
-    folder = Path(table).parent if isinstance(table, str | Path) else None
-    bases = _Bases(topology, columns, headers, folder)
-    found = [
-        _variant(bases, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
-    ]
-    seen: set[str] = set()
-    for variant in found:
-        # folders are named after variants, and some file systems know no capital letters
-        if variant.name.casefold() in seen:
-            what = _("variant {name} occurs twice").format(name=value_text(variant.name))
-            raise InputError(where, what, _("give each a different name"))
-        seen.add(variant.name.casefold())
-    return tuple(found)
-
-
-Row: TypeAlias = tuple[int, list[object]]
-"""Number of a row in its file, and its cells."""
+    return where, headers, rows
 
 
 def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
@@ -313,8 +323,6 @@ def _mappings(table: Sequence[Mapping[str, object]], where: str) -> tuple[list[s
             place = _("{table}, row {number}").format(table=where, number=number)
             raise InputError(place, _("its keys are not those of the first row"), ", ".join(headers))
         rows.append((number, list(row.values())))
-    if not rows:
-        raise InputError(where, _("it has no variants"), _("write one row below the headers for each"))
     return headers, rows
 
 
@@ -373,7 +381,7 @@ def _variant(bases: _Bases, row: list[object], where: str) -> Variant:
     has_own = any(_is_one_of(header, TOPOLOGIES) for header in bases.headers)
     for header, column, cell in zip(bases.headers, columns, row, strict=True):
         if column is None:
-            name = _name(cell, where) if _is_one_of(header, NAMES) else name
+            name = variant_name(cell, where) if _is_one_of(header, NAMES) else name
             continue
         if has_own and (cell is None or not str(cell).strip()):
             continue  # the row's description has it, or has nothing of the kind
@@ -384,7 +392,8 @@ def _variant(bases: _Bases, row: list[object], where: str) -> Variant:
     return Variant(name, values, mechanism if source else None, source)
 
 
-def _name(cell: object, where: str) -> str:
+def variant_name(cell: object, where: str) -> str:
+    """The name of a variant by its cell; InputError for an empty one and for what is no name."""
     text = str(cell).strip()
     if not text:
         raise InputError(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,6 +17,10 @@ from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
+    from centrode.sheets.sheet import Sheet
+
 
 @click.command(help=mark("Compute every variant of a table."))
 @click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row per variant."))
@@ -22,7 +28,7 @@ from centrode.locale import _, mark
     "--topology",
     required=True,
     metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("The mechanism whose numbers the table varies."),
+    help=mark("The mechanism, gear pair or train whose numbers the table varies."),
 )
 @click.option(
     "--out",
@@ -73,6 +79,13 @@ def variants(
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     cluster = asked_cluster(workers, scheduler)
     spelling = asked_spelling()
+    described = library.load_description(topology)
+    if isinstance(described, ct.GearPair | ct.GearTrain):
+        _refuse_for_gears(jobs=jobs, compute=compute, cluster=cluster)
+        _gear_variants(
+            described, table, output.folder_of(out, table, "variants"), figures, kinds if reports else ()
+        )
+        return
     description = library.load(topology)
     folder = output.folder_of(out, table, "variants")
     try:
@@ -110,10 +123,38 @@ def variants(
         note = _("finished results stay in {folder}; the same command resumes from there")
         output.tell(note.format(folder=folder))
         raise
-    found = library.spoken_variants(found)
-    sheet = library.sheet_of(found)
-    click.echo(render.sheet_text(sheet, description.display))
     written = ["summary.csv", *(f"answers.{kind}" for kind in dict.fromkeys(kinds) if reports)]
+    _show(library.sheet_of(library.spoken_variants(found)), table, folder, written, description.display)
+
+
+def _show(sheet: Sheet, table: str, folder: Path, written: Sequence[str], display: Display) -> None:
+    """Print the table and what was written; MotionError where a variant was refused."""
+    click.echo(render.sheet_text(sheet, display))
     click.echo("\n".join(_("wrote {file}").format(file=folder / name) for name in written))
     if sheet.failure is not None:
-        raise MotionError(table, render.plain_text(sheet.failure.what, description.display))
+        raise MotionError(table, render.plain_text(sheet.failure.what, display))
+
+
+def _refuse_for_gears(*, jobs: int, compute: str | None, cluster: object) -> None:
+    """Options that say nothing of gears."""
+    given = {
+        "--jobs": jobs != 1, "--compute": compute is not None, "--workers": cluster is not None
+    }  # fmt: skip
+    for option, is_given in given.items():
+        if is_given:
+            raise InputError(option, _("this option is for variants of mechanisms"), _("remove it"))
+
+
+def _gear_variants(
+    described: ct.GearPair | ct.GearTrain, table: str, folder: Path, figures: bool, formats: tuple[str, ...]
+) -> None:
+    """Variants of a gear pair or of a train."""
+    with Progress() as progress:
+
+        def tell(done: int, of: int) -> None:
+            progress.say(_("computing variants"), done, of)
+
+        found = library.write_gear_variants(
+            described, table, folder, figures, formats, tell, asked_spelling()
+        )
+    _show(library.sheet_of(found), table, folder, ("summary.csv",), described.display)

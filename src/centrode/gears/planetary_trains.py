@@ -260,6 +260,3 @@ class OrdinaryTrain:
     def efficiency(self, meshes: MeshEfficiency) -> float:
         """That of a mesh for each pair."""
         return meshes.external ** len(self.pairs)
-
-
-AnyTrain = PlanetaryTrain | CarrierSeries | OrdinaryTrain

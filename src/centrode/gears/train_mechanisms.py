@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from centrode.errors import InputError
+from centrode.gears.closed_trains import ClosedTrain, set_of
 from centrode.gears.planetary_trains import CarrierSeries, OrdinaryTrain, PlanetaryTrain
 from centrode.gears.train_results import GearTrainResults
 from centrode.locale import _
@@ -63,6 +64,43 @@ class _Parts:
         self.gear(rolling, "frame", scheme.fixed * other / fixed, carrier)
         return carrier
 
+    def closed_train(self, train: ClosedTrain) -> tuple[str, str]:
+        """Both sets of a closed train, with one planet each; returns what drives and what is driven.
+
+        A shaft is called by its first member; what is at rest is the frame.
+        """
+        shafts = train.shafts
+        links = {member: shaft[0].replace(" ", "-") for shaft in shafts.shafts for member in shaft}
+        links |= dict.fromkeys(shafts.shaft(shafts.fixed), "frame")
+        for shaft in shafts.shafts:
+            points = {AXIS: [0.0, 0.0]} | dict(self._mark(train, member) for member in shaft)
+            if links[shaft[0]] == "frame":
+                self.points |= {
+                    name: [self.axis[0] + place[0], self.axis[1]]
+                    for name, place in points.items()
+                    if name.startswith("A")
+                }
+            else:
+                self.links[links[shaft[0]]] = {"points": points, "angle": 0.0}
+        for number, stage in enumerate(train.stages, 1):
+            own, planet, _other, ring = stage.teeth
+            sun, outer, carrier = (links[f"{part} {number}"] for part in ("sun", "ring", "carrier"))
+            rolling = f"planet-{number}"
+            self.wheel(rolling, f"A{number}", f"P{number}", planet)
+            self.gear(sun, rolling, -own / planet, carrier)
+            self.gear(rolling, outer, planet / ring, carrier)
+        return links[shafts.input], links[shafts.output]
+
+    def _mark(self, train: ClosedTrain, member: str) -> tuple[str, list[float]]:
+        """A point of a member that shows how it turns: on a pitch circle, or the planet's axis of a carrier."""
+        stage, number = train.stages[set_of(member)], set_of(member) + 1
+        letter, radius = {
+            "sun": ("W", stage.teeth[0]),
+            "ring": ("R", stage.teeth[3]),
+            "carrier": ("A", stage.arms[0]),
+        }[member.split()[0]]
+        return f"{letter}{number}", [radius * self.radius, 0.0]
+
     def shaft(self, driving: str, number: int, teeth: tuple[int, int], along: float) -> float:
         """A shaft that an external wheel drives, on an axis to the right; returns how far that lies from the first."""
         there = along + sum(teeth) * self.radius
@@ -81,6 +119,8 @@ class _Parts:
             for number, teeth in enumerate(train.pairs, 2):
                 along = self.shaft(f"shaft-{number - 1}", number, teeth, along)
             return "shaft-1", f"shaft-{len(train.pairs) + 1}", along
+        if isinstance(train, ClosedTrain):
+            return *self.closed_train(train), 0.0
         stages = train.stages if isinstance(train, CarrierSeries) else (train,)
         last = "wheel-1"
         for number, stage in enumerate(stages, 1):
@@ -93,8 +133,8 @@ class _Parts:
 def train_mechanism(results: GearTrainResults, machine: MechanismSource | None = None) -> Mechanism:
     """The chosen train as a mechanism whose driven link turns once; or a machine that it drives.
 
-    What drives is the link "wheel-1", "carrier-1" or "shaft-1"; one planet stands for all of a stage; behind a pair the
-    driven link is "crank".
+    What drives is the link "wheel-1", "carrier-1" or "shaft-1", of a closed train that of its first member, such as
+    "sun-1"; one planet stands for all of a stage; behind a pair the driven link is "crank".
 
     Parameters
     ----------

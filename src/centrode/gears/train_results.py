@@ -8,9 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from centrode.errors import InputError, MotionError
+from centrode.gears.any_train import AnyTrain
+from centrode.gears.closed_trains import ClosedTrain, set_of
 from centrode.gears.involutes import Array
 from centrode.gears.planetary_trains import (
-    AnyTrain,
     CarrierSeries,
     MeshEfficiency,
     OrdinaryTrain,
@@ -31,13 +32,13 @@ class MemberMotion:
 
     Attributes
     ----------
-    member : "wheel 1", "planet 1", "carrier 1", ..., and "crank" behind a pair
+    members : ("wheel 1",), ("planet 1",), ...; two of a joined shaft of a closed train; ("crank",) behind a pair
     speed : angular velocity [rad/s]
     places : (n) on the line of centres from the first axis [m]: its own axis, its contacts
     velocities : (n) across that line [m/s]
     """
 
-    member: str
+    members: tuple[str, ...]
     speed: float
     places: Array
     velocities: Array
@@ -117,6 +118,8 @@ class GearTrainResults:
                 *_planetary_motions(first, radius, self.input_speed, 1),
                 *_planetary_motions(second, radius, middle, 2),
             ]
+        elif isinstance(train, ClosedTrain):
+            moves = _closed_motions(train, radius, self.input_speed)
         else:
             moves = _planetary_motions(train, radius, self.input_speed, 1)
         pair = self.gear_train.pair_behind
@@ -131,7 +134,7 @@ class GearTrainResults:
 def _line(member: str, speed: float, axis: float, places: list[float]) -> MemberMotion:
     """A body that turns about an axis of the frame."""
     at = np.array([axis, *places])
-    return MemberMotion(member, speed, at, speed * (at - axis))
+    return MemberMotion((member,), speed, at, speed * (at - axis))
 
 
 def _planetary_motions(
@@ -143,12 +146,36 @@ def _planetary_motions(
     rolls = carrier * float(train.planet_ratio)
     # The planets touch the fixed wheel where they are at rest.
     at = np.array([arm, sun * radius, fixed * radius])
-    planets = MemberMotion(f"planet {stage}", rolls, at, carrier * arm + rolls * (at - arm))
+    planets = MemberMotion((f"planet {stage}",), rolls, at, carrier * arm + rolls * (at - arm))
     return [
         _line(f"wheel {stage}", carrier * float(train.sun_ratio), 0.0, [sun * radius]),
         planets,
         _line(f"carrier {stage}", carrier, 0.0, [arm]),
     ]
+
+
+def _closed_motions(train: ClosedTrain, radius: float, input_speed: float) -> list[MemberMotion]:
+    """The shafts that turn, then the planets of both sets."""
+    speeds = {member: input_speed * float(speed) for member, speed in train.speeds.items()}
+    moves = []
+    for shaft in train.shafts.shafts:
+        contacts = {_contact_radius(train, member) for member in shaft}
+        at = np.array([0, *sorted(contacts)]) * radius
+        if train.speeds[shaft[0]]:
+            moves.append(MemberMotion(shaft, speeds[shaft[0]], at, speeds[shaft[0]] * at))
+    for number, stage in enumerate(train.stages, 1):
+        sun, planet, _other, ring = stage.teeth
+        carrier = speeds[f"carrier {number}"]
+        rolls = carrier + (carrier - speeds[f"sun {number}"]) * sun / planet
+        at = np.array([stage.arms[0], sun, ring]) * radius
+        moves.append(MemberMotion((f"planet {number}",), rolls, at, carrier * at[0] + rolls * (at - at[0])))
+    return moves
+
+
+def _contact_radius(train: ClosedTrain, member: str) -> int:
+    """Where a member meets its planets, in half modules: at their axes where it is the carrier."""
+    stage = train.stages[set_of(member)]
+    return {"sun": stage.teeth[0], "ring": stage.teeth[3], "carrier": stage.arms[0]}[member.split()[0]]
 
 
 def _ordinary_motions(train: OrdinaryTrain, radius: float, speed: float) -> list[MemberMotion]:
@@ -201,7 +228,7 @@ def gear_train(source: GearTrainSource) -> GearTrainResults:
     least, most = described.teeth
     planets = 1 if described.scheme in ORDINARY else described.planets
     bounds = TrainBounds(described.train_ratio, described.tolerance, least, most, planets)
-    found = find_trains(described.scheme, bounds, described.driver)
+    found = find_trains(described.scheme, bounds, described.driver, described.shafts)
     results = GearTrainResults(described, found)
     if not found.trains:
         raise MotionError("ratio", *_nothing_found(results))

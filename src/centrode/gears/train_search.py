@@ -5,26 +5,29 @@ Every combination of tooth numbers that coaxial axes leave is looked at, so noth
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from centrode.gears.any_train import AnyTrain
+from centrode.gears.closed_trains import ClosedTrain, willis_ratio
 from centrode.gears.planetary_trains import (
     INTERNAL,
     ROOT,
     SCHEMES,
     TIP,
-    AnyTrain,
     CarrierSeries,
     Driver,
     OrdinaryTrain,
     PlanetaryScheme,
     PlanetaryTrain,
 )
+from centrode.model.gear_trains import ClosedShafts
 
 Whole = NDArray[np.int64]
 Train = TypeVar("Train", bound=AnyTrain)
@@ -74,15 +77,20 @@ class FoundTrains:
     more: bool = False
 
 
-def find_trains(scheme: str, bounds: TrainBounds, driver: Driver | None = None) -> FoundTrains:
+def find_trains(
+    scheme: str, bounds: TrainBounds, driver: Driver | None = None, shafts: ClosedShafts | None = None
+) -> FoundTrains:
     """All trains of a scheme within bounds, ranked by size.
 
     Parameters
     ----------
-    scheme : a planetary one, "two carriers" (two of single planets in series), "one pair" or "two pairs"
+    scheme : a planetary one, "two carriers" (two of single planets in series), "closed", "one pair" or "two pairs"
     bounds : TrainBounds
     driver : of a planetary scheme; the usual one by default
+    shafts : of a closed train
     """
+    if shafts is not None:
+        return _closed_trains(shafts, bounds)
     if scheme in SCHEMES:
         planetary = SCHEMES[scheme]
         return _planetary_trains(planetary, bounds, driver or planetary.driver)
@@ -159,7 +167,32 @@ def _diameters(scheme: PlanetaryScheme, rows: Whole) -> NDArray[np.float64]:
     return np.asarray(np.max(reach, axis=0), dtype=np.float64)
 
 
-# Products of two ratios: two carriers, two pairs
+# Two parts that each have many tooth numbers: two carriers, two pairs, closed trains
+
+
+@dataclass
+class _SmallestPairs:
+    """Pairs of places (first, second) with their sizes; only those that may be among the smallest are kept."""
+
+    found: list[tuple[float, int, int]] = field(default_factory=list)
+    worst: float = math.inf
+    more: bool = False
+
+    def add(self, first: int, second: Whole, sizes: NDArray[np.float64]) -> None:
+        """Pairs of one place with many."""
+        kept = sizes <= self.worst
+        self.found += zip(sizes[kept].tolist(), [first] * int(kept.sum()), second[kept].tolist(), strict=True)
+        if len(self.found) > 40 * MOST_TRAINS:
+            # Only sizes up to that of the last one listed can still come in.
+            self.found.sort()
+            self.worst = self.found[MOST_TRAINS][0]
+            self.found = [one for one in self.found if one[0] <= self.worst]
+            self.more = True
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """The pairs, the smallest first."""
+        return [(first, second) for _size, first, second in sorted(self.found)]
 
 
 def _products(
@@ -172,9 +205,8 @@ def _products(
     order = np.argsort(ratios, kind="stable")
     rising = ratios[order]
     wanted = abs(bounds.ratio)
-    found: list[tuple[float, int, int]] = []
+    found = _SmallestPairs()
     nearest: tuple[float, int, int] | None = None
-    worst, more = np.inf, False
     for first, ratio in enumerate(ratios.tolist()):
         # A little wider than the tolerance: what lies on its edge is decided by `misses` itself.
         low, high = (wanted * (1 + side * bounds.tolerance * (1 + 1e-9)) / ratio for side in (-1, 1))
@@ -182,27 +214,50 @@ def _products(
         second = order[begin:end]
         second = second[bounds.misses(np.sign(bounds.ratio) * ratio * ratios[second]) <= bounds.tolerance]
         if len(second):
-            size = sizes(first, second)
-            kept = size <= worst
-            found += zip(size[kept].tolist(), [first] * int(kept.sum()), second[kept].tolist(), strict=True)
-            if len(found) > 40 * MOST_TRAINS:
-                # Only sizes up to that of the last one listed can still come in.
-                found = sorted(found)
-                worst = found[MOST_TRAINS][0]
-                found, more = [one for one in found if one[0] <= worst], True
-        elif not found:
+            found.add(first, second, sizes(first, second))
+        elif not found.found:
             for place in {max(int(begin) - 1, 0), min(int(end), len(order) - 1)}:
                 miss = float(bounds.misses(np.array([np.sign(bounds.ratio) * ratio * rising[place]]))[0])
                 if nearest is None or miss < nearest[0]:
                     nearest = (miss, first, int(order[place]))
-    pairs = [(first, second) for _size, first, second in sorted(found)]
-    return pairs, None if nearest is None else nearest[1:], more
+    return found.pairs, None if nearest is None else nearest[1:], found.more
+
+
+def _planetary_sets(bounds: TrainBounds, driver: Driver = "sun") -> list[PlanetaryTrain]:
+    """All sets of sun, planets with one rim and ring that can be built."""
+    scheme = SCHEMES["single planets"]
+    rows = np.concatenate([*_coaxial_rows(scheme, bounds)])
+    return list(_working_trains(scheme, rows, bounds.planets, driver))
+
+
+def _closed_trains(shafts: ClosedShafts, bounds: TrainBounds) -> FoundTrains:
+    sets = _planetary_sets(bounds)
+    if not sets:
+        return FoundTrains(())
+    formula = willis_ratio(shafts)
+    inner = np.array([float(-one.fixed_carrier_ratio) for one in sets])
+    diameters = np.array([one.diameter for one in sets])
+    found = _SmallestPairs()
+    nearest = (math.inf, 0, 0)
+    for first, ratio in enumerate(inner.tolist()):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            misses = bounds.misses(formula.at(np.full_like(inner, ratio), inner))
+        second = np.flatnonzero(misses <= bounds.tolerance)
+        if len(second):
+            found.add(first, second, np.maximum(diameters[first], diameters[second]))
+        elif not found.found and np.isfinite(misses).any():
+            place = int(np.nanargmin(misses))
+            nearest = min(nearest, (float(misses[place]), first, place))
+
+    def train_of(places: tuple[int, int]) -> ClosedTrain:
+        return ClosedTrain(shafts, (sets[places[0]], sets[places[1]]))
+
+    near = train_of(nearest[1:]) if math.isfinite(nearest[0]) else None
+    return _list_of([train_of(pair) for pair in found.pairs], near, found.more)
 
 
 def _carrier_series(bounds: TrainBounds, driver: Driver) -> FoundTrains:
-    scheme = SCHEMES["single planets"]
-    rows = np.concatenate([*_coaxial_rows(scheme, bounds)])
-    stages = list(_working_trains(scheme, rows, bounds.planets, driver))
+    stages = _planetary_sets(bounds, driver)
     if not stages or bounds.ratio < 0:
         return FoundTrains(())
     ratios = np.array([float(stage.ratio) for stage in stages])

@@ -9,13 +9,16 @@ from pydantic import PlainValidator, model_validator
 from centrode.locale import _
 from centrode.model.cam import whole
 from centrode.model.description_files import DescriptionFiles
-from centrode.model.reading import KEY, DescriptionPart, Problem, choice, value_text
+from centrode.model.reading import KEY, DescriptionPart, Problem, choice, nearest, value_text
 from centrode.model.settings import Display, GearReportWishes
 from centrode.model.values import Text, angular_speed, positive, quantity, si
 
 KIND = "gear train"
-PLANETARY = ("single planets", "stepped planets", "external meshes", "internal meshes", "two carriers")
+PLANETARY = (
+    "single planets", "stepped planets", "external meshes", "internal meshes", "two carriers", "closed",
+)  # fmt: skip
 ORDINARY = ("one pair", "two pairs")
+CLOSED = "closed"
 TRAIN_SCHEMES = (*PLANETARY, *ORDINARY)
 """What trains may be sought."""
 FEWEST_TEETH, MOST_TEETH = 10, 250
@@ -23,9 +26,12 @@ MOST_PLANETS = 12
 MOST_RATIO = 10_000.0
 
 TrainScheme: TypeAlias = Literal[
-    "single planets", "stepped planets", "external meshes", "internal meshes", "two carriers",
+    "single planets", "stepped planets", "external meshes", "internal meshes", "two carriers", "closed",
     "one pair", "two pairs",
 ]  # fmt: skip
+Shaft: TypeAlias = tuple[str, ...]
+SET_MEMBERS = ("sun 1", "ring 1", "carrier 1", "sun 2", "ring 2", "carrier 2")
+"""Members of both planetary sets of a closed train."""
 
 
 def _read_ratio(value: object) -> float:
@@ -78,6 +84,84 @@ class MeshLosses(DescriptionPart):
     internal: Annotated[float, _share(0.5, 1.0)] = 0.99
 
 
+def _read_member(value: object) -> str:
+    if value not in SET_MEMBERS:
+        what = _("{value} is no member of a planetary set").format(value=value_text(value))
+        raise Problem(what, nearest(value, list(SET_MEMBERS)) if isinstance(value, str) else "")
+    return str(value)
+
+
+def _read_joined(value: object) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Two pairs of members, those of set 1 first."""
+    form = '[["carrier 1", "sun 2"], ["ring 1", "ring 2"]]'
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
+    pairs = []
+    for pair in value:
+        if not isinstance(pair, list | tuple) or len(pair) != 2:
+            raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(pair)))
+        first, second = sorted(map(_read_member, pair), key=lambda member: member[-1])
+        if first[-1] == second[-1]:
+            what = _("{first} and {second} belong to one set, which would turn as one body")
+            raise Problem(
+                what.format(first=value_text(first), second=value_text(second)),
+                _("join a member of set 1 with one of set 2"),
+            )
+        pairs.append((first, second))
+    members = [member for pair in pairs for member in pair]
+    for member in members:
+        if members.count(member) > 1:
+            what = _("{member} is joined twice").format(member=value_text(member))
+            raise Problem(what, _("join two members of each set"))
+    return pairs[0], pairs[1]
+
+
+class ClosedShafts(DescriptionPart):
+    """The four shafts of a closed train: what two planetary sets have in common, and what drives, is driven, rests.
+
+    Attributes
+    ----------
+    joined : two pairs of members, of set 1 and of set 2, that are one shaft each
+    input, output, fixed : a member of the shaft that drives, of that which is driven, of that which is at rest
+    """
+
+    joined: Annotated[tuple[tuple[str, str], tuple[str, str]], PlainValidator(_read_joined)]
+    input: Annotated[str, PlainValidator(_read_member)]
+    output: Annotated[str, PlainValidator(_read_member)]
+    fixed: Annotated[str, PlainValidator(_read_member)]
+
+    def shaft(self, member: str) -> Shaft:
+        """The members of the shaft that one of them belongs to."""
+        return next((pair for pair in self.joined if member in pair), (member,))
+
+    @property
+    def shafts(self) -> tuple[Shaft, ...]:
+        """All four shafts, in the order of `SET_MEMBERS`."""
+        return tuple(dict.fromkeys(self.shaft(member) for member in SET_MEMBERS))
+
+    @property
+    def inner(self) -> Shaft:
+        """The shaft that neither drives nor is driven nor rests: a joined one, that of set 1 first."""
+        used = {self.shaft(member) for member in (self.input, self.output, self.fixed)}
+        return next(shaft for shaft in self.shafts if shaft not in used)
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        ends = {"input": self.input, "output": self.output, "fixed": self.fixed}
+        met: dict[Shaft, str] = {}
+        for key, member in ends.items():
+            shaft = self.shaft(member)
+            if shaft in met:
+                what = _("{one} and {other} name the same shaft").format(one=met[shaft], other=key)
+                raise Problem(what, _("name a member of another shaft"), (key,))
+            met[shaft] = key
+        if len(self.inner) == 1:
+            # Nothing balances a moment on a free member, so its set has none at all.
+            what = _("{member} is free, so its set bears no moment").format(member=value_text(self.inner[0]))
+            raise Problem(what, _("let it drive, be driven or rest, or join it"), ("joined",))
+        return self
+
+
 class GearTrain(DescriptionPart):
     """A train of gears, ordinary or planetary, whose numbers of teeth are sought by its ratio.
 
@@ -93,6 +177,7 @@ class GearTrain(DescriptionPart):
     input_speed, output_speed : of motor and crank [rad/s]; both in place of the ratio
     pair_behind : teeth of an ordinary pair between the train and what it drives
     driver : "sun" or "carrier" of a planetary train
+    shafts : ClosedShafts, of a closed train alone
     planets : number of them
     module : m [m]
     teeth : least and greatest number
@@ -122,6 +207,7 @@ class GearTrain(DescriptionPart):
     output_speed: Annotated[float, PlainValidator(angular_speed)] | None = None
     pair_behind: Annotated[tuple[int, int], PlainValidator(_two_numbers)] | None = None
     driver: Annotated[Literal["sun", "carrier"], choice("sun", "carrier")] | None = None
+    shafts: ClosedShafts | None = None
     planets: Annotated[int, whole(1, MOST_PLANETS)] = 3
     module: Annotated[float, quantity("length", positive)]
     teeth: Annotated[tuple[int, int], PlainValidator(_bounds)] = (17, 120)
@@ -169,9 +255,15 @@ class GearTrain(DescriptionPart):
         if self.pair_behind is not None and self.whole_ratio < 0:
             what = _("with a pair behind the train the sense of rotation follows from both")
             raise Problem(what, _("give the ratio without a sign"), ("ratio",))
-        if self.driver is not None and self.scheme in (*ORDINARY, "two carriers"):
+        if self.driver is not None and self.scheme in (*ORDINARY, "two carriers", CLOSED):
             what = _("the driver of this scheme cannot be chosen")
             raise Problem(what, _("remove driver"), ("driver",))
+        if (self.scheme == CLOSED) != (self.shafts is not None):
+            if self.shafts is None:
+                what = _("the shafts of a closed train are missing")
+                raise Problem(what, _("give shafts = { joined, input, output, fixed }"), ("shafts",))
+            what = _("only a closed train has shafts that are joined")
+            raise Problem(what, _('remove shafts, or take scheme = "closed"'), ("shafts",))
         return self
 
 

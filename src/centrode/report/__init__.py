@@ -17,8 +17,16 @@ if TYPE_CHECKING:
     from centrode.report.files import write_report
     from centrode.report.study import ReportOptions
     from centrode.report.variants.files import write_variant_reports
+    from centrode.report.variants.gear_folders import write_gear_variants
 
-__all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_reports"]
+__all__ = [
+    "Report",
+    "ReportOptions",
+    "report",
+    "write_gear_variants",
+    "write_report",
+    "write_variant_reports",
+]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
@@ -26,6 +34,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "document": ["Report", "report"],
         "study": ["ReportOptions"],
         "variants.files": ["write_variant_reports"],
+        "variants.gear_folders": ["write_gear_variants"],
         "files": ["write_report"],
     },
 )

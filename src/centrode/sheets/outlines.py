@@ -43,6 +43,8 @@ class LineUse(Enum):
     UNDERCUT = "undercut"
     AXIS = "axis of a motion"
     FOLLOWER = "follower"
+    WORKING = "working flanks"
+    CIRCLE = "circles"
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +159,7 @@ class OutlineDrawing:
     pieces : outlines in layers
     layers : names of the layers in the legend
     shapes : in drawing order, and that of the legend
-    centre : name of the origin, at the end of the legend
+    centre : name of the origin, at the end of the legend; where there is none the origin is not shown
     """
 
     title: Sentence

@@ -41,6 +41,14 @@ VARIANTS = Topic(
     subject="mechanisms",
 )
 
+GEAR_VARIANTS = Topic(
+    name="gear-variants",
+    compute=Lazily("centrode.assignments.gear_variants", "gear_variants"),
+    result=Lazily("centrode.assignments.gear_variants", "GearVariants"),
+    view=Lazily("centrode.views.gear_variants", "sheet"),
+    subject="mechanisms",
+)
+
 TOLERANCES = Topic(
     name="tolerances",
     compute=Lazily("centrode.tolerances.results", "tolerance_results"),

@@ -143,7 +143,9 @@ def description_of(result: Any) -> Mechanism | AnyCam | GearPair | GearTrain:
     dataset = result.dataset if isinstance(result, Result) else result
     if is_result(dataset):
         return _parsed_description(dataset)
-    known = (getattr(result, name, None) for name in ("mechanism", "cam", "gear_pair", "gear_train"))
+    known = (
+        getattr(result, name, None) for name in ("mechanism", "cam", "gear_pair", "gear_train", "described")
+    )
     return cast("Mechanism | AnyCam | GearPair | GearTrain", next(one for one in known if one is not None))
 
 

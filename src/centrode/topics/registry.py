@@ -37,6 +37,7 @@ TOPICS: tuple[Topic, ...] = (
     designs.SWEEP,
     designs.PARAMETER_STUDY,
     designs.VARIANTS,
+    designs.GEAR_VARIANTS,
     dynamics.GIVEN_MASSES,
     structure.DESCRIBE,
     cams.BASE_RADIUS,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -57,7 +58,7 @@ from centrode.views.gear_pair_chapters import (
 
 if TYPE_CHECKING:
     from centrode.gears.pair_faults import PairFault
-    from centrode.gears.pair_geometry import PairGeometry
+    from centrode.gears.pair_geometry import GearWheel, PairGeometry
     from centrode.gears.profiles import ToothProfile
     from centrode.gears.results import GearPairResults
 
@@ -89,6 +90,8 @@ CURVES = {
 }
 TEETH_SHOWN = 3
 """Teeth on each side of the mesh in a drawing of it."""
+RACK_TEETH = 4
+"""The same of a rack, whose gap lies in the middle."""
 MOST_SLIDING = 12.0
 """Specific sliding beyond which a curve leaves its figure: at a base circle it is infinite."""
 MOST_PRESSURE = 6.0
@@ -421,27 +424,78 @@ def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
     return OutlineSet(Title(results.gear_pair.title), tuple(pieces))
 
 
-def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array], Array]:
-    """Teeth about the pitch point, arcs of the working pitch circles, and both ends of the active line of action."""
+@dataclass(frozen=True)
+class _TeethInMesh:
+    """Teeth of a wheel about the pitch point.
+
+    Attributes
+    ----------
+    wheel, profile : whose they are
+    angles : of the teeth shown, from that on the y axis of the profile [rad]
+    centre : of the wheel from that of the pinion [m]
+    up : 1 where the pitch point lies above the centre, -1 below
+    """
+
+    wheel: GearWheel
+    profile: ToothProfile
+    angles: Array
+    centre: tuple[float, float]
+    up: int
+
+    def arc(self, diameter: float) -> Array:
+        """An arc of a circle of the wheel over the teeth shown."""
+        half = math.pi / self.profile.teeth * len(self.angles)
+        return _arc(self.centre, diameter / 2, self.up, half)
+
+    def on_all(self, piece: OutlinePiece) -> list[OutlinePiece]:
+        """A piece of the tooth on the y axis on each of the teeth."""
+        return [piece.moved_by(angle, self.centre) for angle in self.angles.tolist()]
+
+    @property
+    def working_flanks(self) -> list[Array]:
+        """The flanks that touch the other wheel where the pinion drives, from where contact begins to the tips."""
+        wheel = self.wheel
+        ends = sorted((wheel.base / 2 / math.cos(wheel.active_pressure), wheel.tip / 2))
+        # The pinion drives with the left flanks; the right flanks of a wheel above it are left ones of its own tooth.
+        side = 1 if wheel.internal else -1
+        flanks = []
+        for piece in whole_tooth(self.profile):
+            radii = np.hypot(*piece.places.T)
+            kept = (radii > ends[0] * (1 - 1e-9)) & (radii < ends[1] * (1 + 1e-9))
+            if np.ptp(radii) > 1e-9 * ends[1] and (side * piece.places[:, 0] > 0).all() and kept.sum() > 1:
+                flanks += [moved.places[kept] for moved in self.on_all(piece)]
+        return flanks
+
+
+def teeth_in_mesh(results: GearPairResults) -> list[_TeethInMesh]:
+    """The teeth of each wheel that are shown; of a rack there are none."""
     pair = results.geometry
-    pieces: list[OutlinePiece] = []
-    circles: list[Array] = []
+    found = []
     for number, profile in enumerate(results.profiles):
         step = 2 * math.pi / profile.teeth
-        centre, half, turn, up = (0.0, 0.0), 0.0, 0.0, 1
+        centre, turn, up = (0.0, 0.0), 0.0, 1
         if number:
             # A gap of the wheel takes the pinion's tooth: below its centre where it is external, above where internal.
             centre = (0.0, pair.sign * pair.centre_distance)
-            half, turn, up = step / 2, math.pi if pair.sign > 0 else 0.0, -pair.sign
+            turn, up = step / 2 + (math.pi if pair.sign > 0 else 0.0), -pair.sign
         shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
         # The gap of the wheel lies in the middle: as many teeth on either side.
-        for tooth in range(-shown, shown + 1 - number):
-            angle = turn + half + tooth * step
-            pieces += [
-                piece.on_layer(("profile", "shoe")[number]).moved_by(angle, centre)
-                for piece in whole_tooth(profile)
-            ]
-        circles.append(_arc(centre, pair.wheels[number].working_pitch / 2, up, (shown + 0.5) * step))
+        angles = turn + step * np.arange(-shown, shown + 1 - number)
+        found.append(_TeethInMesh(pair.wheels[number], profile, angles, centre, up))
+    return found
+
+
+def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array], Array]:
+    """Teeth about the pitch point, arcs of the working pitch circles, and both ends of the active line of action."""
+    pair = results.geometry
+    teeth = teeth_in_mesh(results)
+    pieces = [
+        moved.on_layer(("profile", "shoe")[one.wheel.number])
+        for one in teeth
+        for piece in whole_tooth(one.profile)
+        for moved in one.on_all(piece)
+    ]
+    circles = [one.arc(one.wheel.working_pitch) for one in teeth]
     begin, end = pair.action_ends
     middle, angle = pair.pitch_curvature_radius, pair.working_angle
     # The contact moves with the driven flank: along the inner tangent of both base circles through the pitch point.
@@ -451,14 +505,20 @@ def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array
 
 
 def _mesh(results: GearPairResults) -> OutlineDrawing:
-    """The teeth about the pitch point, with the circles and the line of action."""
+    """The teeth about the pitch point, with their working flanks, the circles and the line of action."""
     pair = results.geometry
+    teeth = teeth_in_mesh(results)
     pieces, circles, action = mesh_parts(results)
+    shapes = []
     if pair.kind == "rack":
-        shapes = [DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (rack_line(pair),))]
-    else:
-        shapes = [DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles))]
-    shapes.append(DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (action,)))
+        shapes.append(DrawnLines(LineUse.FOLLOWER, Sentence("teeth of the rack"), (rack_line(pair),)))
+    flanks = tuple(flank for one in teeth for flank in one.working_flanks)
+    shapes += [
+        DrawnLines(LineUse.WORKING, Sentence("working flanks"), flanks),
+        DrawnLines(LineUse.AXIS, Sentence("working pitch circles"), tuple(circles)),
+        DrawnLines(LineUse.CIRCLE, Sentence("base circles"), tuple(one.arc(one.wheel.base) for one in teeth)),
+        DrawnLines(LineUse.NORMAL, Sentence("active line of action"), (action,)),
+    ]
     return OutlineDrawing(
         Sentence("Teeth in mesh"),
         Title(results.gear_pair.title),
@@ -503,7 +563,7 @@ def _generation(results: GearPairResults) -> OutlineDrawing:
             DrawnLines(LineUse.NORMAL, Sentence("positions of the rack"), positions),
             DrawnLines(LineUse.AXIS, Sentence("pitch circle"), (circle,)),
         ),
-        Sentence("axis of the pinion"),
+        NOTHING,
     )
 
 
@@ -521,7 +581,7 @@ def rack_line(pair: PairGeometry) -> Array:
     # Half of a tooth at the rack's reference line, and what the flank gains towards the tip and the root.
     half, slope = math.pi * module / 4, math.tan(angle)
     corners = []
-    for tooth in range(-4, 5):
+    for tooth in range(-RACK_TEETH, RACK_TEETH):
         middle = (tooth + 0.5) * math.pi * module
         corners += [
             (middle - half - root * slope, line + root),
@@ -530,6 +590,13 @@ def rack_line(pair: PairGeometry) -> Array:
             (middle + half + root * slope, line + root),
         ]
     return np.array(corners)
+
+
+def sliding_label(results: GearPairResults) -> Sentence:
+    """What an axis of specific sliding is called; where it grows beyond what is shown, up to where it is."""
+    if (np.abs(results.line_of_action.sliding) > MOST_SLIDING).any():
+        return Sentence("specific sliding, shown up to {most} in size", most=Number(MOST_SLIDING))
+    return Sentence("specific sliding")
 
 
 def _sliding(results: GearPairResults) -> Plot:
@@ -541,7 +608,7 @@ def _sliding(results: GearPairResults) -> Plot:
     label = AxisLabel(Sentence("along the line of action, from the pitch point"), unit="m")
     count = np.arange(len(action.places), dtype=np.intp)
     rows = [
-        (CurvePanel(AxisLabel(Sentence("specific sliding")), tuple(curves)),),
+        (CurvePanel(AxisLabel(sliding_label(results)), tuple(curves)),),
         (
             CurvePanel(
                 AxisLabel(Sentence("pressure coefficient")),

@@ -105,29 +105,8 @@ def geometry_chapter(results: GearPairResults, wheels_table: Table) -> Chapter:
 
 
 def _mesh(pair: PairGeometry) -> Iterator[Block]:
-    section = pair.transverse
     if pair.helix_angle:
-        yield Paragraph(
-            Sentence("Teeth are computed in the transverse section, with the module and the angle")
-        )
-        cosine = Number(math.cos(pair.helix_angle))
-        yield Formula(
-            (
-                _line(
-                    "m_t",
-                    "frac(m, cos beta)",
-                    "frac({m}, {c})",
-                    _size(section.module),
-                    m=_hidden(pair.module),
-                    c=cosine,
-                ),
-                (
-                    "alpha_t",
-                    Expression("arctan frac(tan alpha, cos beta)"),
-                    _angle(section.pressure_angle),
-                ),
-            )
-        )
+        yield from _transverse_section(pair)
     if pair.kind == "rack":
         yield Paragraph(
             Sentence(
@@ -135,31 +114,67 @@ def _mesh(pair: PairGeometry) -> Iterator[Block]:
             )
         )
         return
-    internal = pair.kind == "internal"
-    sums = ("x_2 - x_1", "z_2 - z_1") if internal else ("x_1 + x_2", "z_1 + z_2")
-    own = involute(section.pressure_angle)
     yield Paragraph(Sentence("The working pressure angle $alpha_w$ follows from mesh without play:"))
+    yield Formula(_working_angle(pair), "working-angle")
+    yield Paragraph(Sentence("The pitch circles would touch at the distance $a$, the wheels mesh at $a_w$:"))
+    yield Formula((*_distances(pair), *_distance_coefficients(pair)))
+    apart = sum(_signed_radius(pair, wheel) for wheel in pair.wheels)
+    yield Check(
+        Sentence("The radii of the working pitch circles make up the centre distance within {share}."),
+        abs(apart - pair.centre_distance),
+        pair.centre_distance,
+        ROUNDING,
+    )
+
+
+def _transverse_section(pair: PairGeometry) -> Iterator[Block]:
+    """Module and angle of the section in which helical teeth are computed."""
+    section = pair.transverse
+    yield Paragraph(Sentence("Teeth are computed in the transverse section, with the module and the angle"))
     yield Formula(
         (
             _line(
-                'op("inv") alpha_w',
-                f'op("inv") alpha_t + frac(2 ({sums[0]}) tan alpha, {sums[1]})',
-                "{own} + frac(2 dot ({x}) dot {slope}, {z})",
-                Number(pair.working_involute),
-                own=Number(own),
-                x=Number(pair.shift_sum),
-                slope=Number(math.tan(pair.rack.pressure_angle)),
-                z=Number(pair.teeth_sum),
+                "m_t",
+                "frac(m, cos beta)",
+                "frac({m}, {c})",
+                _size(section.module),
+                m=_hidden(pair.module),
+                c=Number(math.cos(pair.helix_angle)),
             ),
-            ("alpha_w", _angle(pair.working_angle)),
-        ),
-        "working-angle",
+            ("alpha_t", Expression("arctan frac(tan alpha, cos beta)"), _angle(section.pressure_angle)),
+        )
     )
-    yield Paragraph(Sentence("The pitch circles would touch at the distance $a$, the wheels mesh at $a_w$:"))
-    lines = [
+
+
+def _sums(pair: PairGeometry) -> tuple[str, str]:
+    """Letters of the sums of shifts and of teeth, which are differences where the wheel is internal."""
+    return ("x_2 - x_1", "z_2 - z_1") if pair.kind == "internal" else ("x_1 + x_2", "z_1 + z_2")
+
+
+def _working_angle(pair: PairGeometry) -> tuple[Line, ...]:
+    shifts, teeth = _sums(pair)
+    return (
+        _line(
+            'op("inv") alpha_w',
+            f'op("inv") alpha_t + frac(2 ({shifts}) tan alpha, {teeth})',
+            "{own} + frac(2 dot ({x}) dot {slope}, {z})",
+            Number(pair.working_involute),
+            own=Number(involute(pair.transverse.pressure_angle)),
+            x=Number(pair.shift_sum),
+            slope=Number(math.tan(pair.rack.pressure_angle)),
+            z=Number(pair.teeth_sum),
+        ),
+        ("alpha_w", _angle(pair.working_angle)),
+    )
+
+
+def _distances(pair: PairGeometry) -> tuple[Line, ...]:
+    """The distance of the pitch circles, and that of the centres."""
+    section = pair.transverse
+    return (
         _line(
             "a",
-            f"frac(m_t ({sums[1]}), 2)",
+            f"frac(m_t ({_sums(pair)[1]}), 2)",
             "frac({m} dot {z}, 2)",
             _size(pair.pitch_distance),
             m=_hidden(section.module),
@@ -174,6 +189,12 @@ def _mesh(pair: PairGeometry) -> Iterator[Block]:
             ct=Number(math.cos(section.pressure_angle)),
             cw=Number(math.cos(pair.working_angle)),
         ),
+    )
+
+
+def _distance_coefficients(pair: PairGeometry) -> tuple[Line, ...]:
+    """What the centres move by, and what that leaves of the shifts, in modules."""
+    return (
         _line(
             "y",
             "frac(a_w - a, m)",
@@ -185,20 +206,12 @@ def _mesh(pair: PairGeometry) -> Iterator[Block]:
         ),
         _line(
             "Delta y",
-            f"{sums[0]} - y",
+            f"{_sums(pair)[0]} - y",
             "{x} - {y}",
             Number(pair.equalising_coefficient),
             x=Number(pair.shift_sum),
             y=Factor(Number(pair.distance_coefficient)),
         ),
-    ]
-    yield Formula(tuple(lines))
-    apart = sum(_signed_radius(pair, wheel) for wheel in pair.wheels)
-    yield Check(
-        Sentence("The radii of the working pitch circles make up the centre distance within {share}."),
-        abs(apart - pair.centre_distance),
-        pair.centre_distance,
-        ROUNDING,
     )
 
 
@@ -208,19 +221,34 @@ def _signed_radius(pair: PairGeometry, wheel: GearWheel) -> float:
 
 def _wheel(wheel: GearWheel) -> Iterator[Block]:
     """Diameters and thicknesses of a wheel."""
-    pair, index = wheel.pair, str(wheel.number + 1)
-    section, module = pair.transverse, pair.module
-    height, depth = pair.rack.addendum, pair.rack.addendum + pair.rack.clearance
-    values: dict[str, Leaf] = {
-        "m": _hidden(module),
-        "mt": _hidden(section.module),
+    values = _values_of(wheel)
+    ends = _internal_ends if wheel.internal else _external_ends
+    lines = [*_circles(wheel, values), *ends(wheel, values), _pitch_thickness(wheel, values)]
+    if not wheel.tip_inside_base:
+        lines += _tip_thickness(wheel, values)
+    yield Formula(tuple(lines))
+
+
+def _values_of(wheel: GearWheel) -> dict[str, Leaf]:
+    """Numbers that the formulas of a wheel have in common."""
+    pair = wheel.pair
+    return {
+        "m": _hidden(pair.module),
+        "mt": _hidden(pair.transverse.module),
         "z": Number(wheel.teeth),
         "d": _hidden(wheel.pitch),
         "x": Factor(Number(wheel.shift)),
-        "h": Number(height),
+        "h": Number(pair.rack.addendum),
         "low": Factor(Number(pair.equalising_coefficient)),
+        "c": Number(pair.rack.clearance),
+        "slope": Number(math.tan(pair.rack.pressure_angle)),
     }
-    lines = [
+
+
+def _circles(wheel: GearWheel, values: dict[str, Leaf]) -> tuple[Line, ...]:
+    """Pitch circle, base circle, working pitch circle."""
+    pair, index = wheel.pair, wheel.number + 1
+    return (
         _line(f"d_{index}", f"m_t z_{index}", "{mt} dot {z}", _size(wheel.pitch), **_of(values, "mt", "z")),
         _line(
             f"d_(b {index})",
@@ -228,7 +256,7 @@ def _wheel(wheel: GearWheel) -> Iterator[Block]:
             "{d} dot {c}",
             _size(wheel.base),
             d=values["d"],
-            c=Number(math.cos(section.pressure_angle)),
+            c=Number(math.cos(pair.transverse.pressure_angle)),
         ),
         _line(
             f"d_(w {index})",
@@ -238,79 +266,88 @@ def _wheel(wheel: GearWheel) -> Iterator[Block]:
             b=_hidden(wheel.base),
             c=Number(math.cos(pair.working_angle)),
         ),
-    ]
-    if wheel.internal:
-        relief = 0.25 - 0.125 * wheel.shift if wheel.shift < 2 else 0.0
-        lines += [
-            _line(
-                f"d_(a {index})",
-                f"d_{index} - 2 (h_a^* - x_{index} + Delta y - k_{index}) m",
-                "{d} - 2 dot ({h} - {x} + {low} - {k}) dot {m}",
-                _size(wheel.tip),
-                k=Factor(Number(relief)),
-                **_of(values, "d", "h", "x", "low", "m"),
-            ),
-            _line(
-                f"d_(f {index})",
-                "2 a_w + d_(a 1) + 2 c^* m",
-                "2 dot {a} + {o} + 2 dot {c} dot {m}",
-                _size(wheel.root),
-                a=_hidden(pair.centre_distance),
-                o=_hidden(pair.wheels[0].tip),
-                c=Number(pair.rack.clearance),
-                m=values["m"],
-            ),
-        ]
-    else:
-        lowered = "" if pair.kind == "internal" else " - Delta y"
-        with_lowered = "" if pair.kind == "internal" else " - {low}"
-        keys = ("d", "h", "x", "m") if pair.kind == "internal" else ("d", "h", "x", "m", "low")
-        lines += [
-            _line(
-                f"d_(a {index})",
-                f"d_{index} + 2 (h_a^* + x_{index}{lowered}) m",
-                f"{{d}} + 2 dot ({{h}} + {{x}}{with_lowered}) dot {{m}}",
-                _size(wheel.tip),
-                **_of(values, *keys),
-            ),
-            _line(
-                f"d_(f {index})",
-                f"d_{index} - 2 (h_a^* + c^* - x_{index}) m",
-                "{d} - 2 dot ({t} - {x}) dot {m}",
-                _size(wheel.root),
-                t=Number(depth),
-                **_of(values, "d", "x", "m"),
-            ),
-        ]
-    sign = "+" if wheel.outwards > 0 else "-"
-    lines.append(
-        _line(
-            f"s_{index}",
-            f"(pi / 2 {sign} 2 x_{index} tan alpha) m_t",
-            f"(pi / 2 {sign} 2 dot {{x}} dot {{slope}}) dot {{mt}}",
-            _size(wheel.pitch_thickness),
-            slope=Number(math.tan(pair.rack.pressure_angle)),
-            **_of(values, "x", "mt"),
-        )
     )
-    if not wheel.tip_inside_base:
-        at_tip = math.acos(wheel.base / wheel.tip)
-        other = "-" if wheel.outwards > 0 else "+"
-        lines += [
-            (f"alpha_(a {index})", Expression(f"arccos frac(d_(b {index}), d_(a {index}))"), _angle(at_tip)),
-            _line(
-                f"s_(a {index})",
-                f"d_(a {index}) (frac(s_{index}, d_{index}) {sign} {INV} alpha_t {other} {INV} alpha_(a {index}))",
-                f"{{da}} dot (frac({{s}}, {{d}}) {sign} {{it}} {other} {{ia}})",
-                _size(wheel.tip_thickness),
-                da=_hidden(wheel.tip),
-                s=_hidden(wheel.pitch_thickness),
-                d=values["d"],
-                it=Number(involute(section.pressure_angle)),
-                ia=Number(involute(at_tip)),
-            ),
-        ]
-    yield Formula(tuple(lines))
+
+
+def _internal_ends(wheel: GearWheel, values: dict[str, Leaf]) -> tuple[Line, ...]:
+    """Tip and root circle of a wheel with its teeth inside."""
+    pair, index = wheel.pair, wheel.number + 1
+    relief = 0.25 - 0.125 * wheel.shift if wheel.shift < 2 else 0.0
+    return (
+        _line(
+            f"d_(a {index})",
+            f"d_{index} - 2 (h_a^* - x_{index} + Delta y - k_{index}) m",
+            "{d} - 2 dot ({h} - {x} + {low} - {k}) dot {m}",
+            _size(wheel.tip),
+            k=Factor(Number(relief)),
+            **_of(values, "d", "h", "x", "low", "m"),
+        ),
+        _line(
+            f"d_(f {index})",
+            "2 a_w + d_(a 1) + 2 c^* m",
+            "2 dot {a} + {o} + 2 dot {c} dot {m}",
+            _size(wheel.root),
+            a=_hidden(pair.centre_distance),
+            o=_hidden(pair.wheels[0].tip),
+            **_of(values, "c", "m"),
+        ),
+    )
+
+
+def _external_ends(wheel: GearWheel, values: dict[str, Leaf]) -> tuple[Line, ...]:
+    """Tip and root circle of a wheel with its teeth outside; only beside another such wheel are its tips lowered."""
+    pair, index = wheel.pair, wheel.number + 1
+    lowered = pair.kind != "internal"
+    letters, notation = (" - Delta y", " - {low}") if lowered else ("", "")
+    return (
+        _line(
+            f"d_(a {index})",
+            f"d_{index} + 2 (h_a^* + x_{index}{letters}) m",
+            f"{{d}} + 2 dot ({{h}} + {{x}}{notation}) dot {{m}}",
+            _size(wheel.tip),
+            **_of(values, "d", "h", "x", "m", *(("low",) if lowered else ())),
+        ),
+        _line(
+            f"d_(f {index})",
+            f"d_{index} - 2 (h_a^* + c^* - x_{index}) m",
+            "{d} - 2 dot ({t} - {x}) dot {m}",
+            _size(wheel.root),
+            t=Number(pair.rack.addendum + pair.rack.clearance),
+            **_of(values, "d", "x", "m"),
+        ),
+    )
+
+
+def _pitch_thickness(wheel: GearWheel, values: dict[str, Leaf]) -> Line:
+    index, sign = wheel.number + 1, "+" if wheel.outwards > 0 else "-"
+    return _line(
+        f"s_{index}",
+        f"(pi / 2 {sign} 2 x_{index} tan alpha) m_t",
+        f"(pi / 2 {sign} 2 dot {{x}} dot {{slope}}) dot {{mt}}",
+        _size(wheel.pitch_thickness),
+        **_of(values, "x", "slope", "mt"),
+    )
+
+
+def _tip_thickness(wheel: GearWheel, values: dict[str, Leaf]) -> tuple[Line, ...]:
+    """Pressure angle at the tips, and the thickness there."""
+    index, own = wheel.number + 1, wheel.pair.transverse.pressure_angle
+    sign, other = ("+", "-") if wheel.outwards > 0 else ("-", "+")
+    at_tip = math.acos(wheel.base / wheel.tip)
+    return (
+        (f"alpha_(a {index})", Expression(f"arccos frac(d_(b {index}), d_(a {index}))"), _angle(at_tip)),
+        _line(
+            f"s_(a {index})",
+            f"d_(a {index}) (frac(s_{index}, d_{index}) {sign} {INV} alpha_t {other} {INV} alpha_(a {index}))",
+            f"{{da}} dot (frac({{s}}, {{d}}) {sign} {{it}} {other} {{ia}})",
+            _size(wheel.tip_thickness),
+            da=_hidden(wheel.tip),
+            s=_hidden(wheel.pitch_thickness),
+            d=values["d"],
+            it=Number(involute(own)),
+            ia=Number(involute(at_tip)),
+        ),
+    )
 
 
 def _of(values: dict[str, Leaf], *names: str) -> dict[str, Leaf]:

@@ -20,10 +20,18 @@ from centrode.sheets.drawing_sheets import (
 )
 from centrode.sheets.plots import AxisLabel
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text
-from centrode.views.gear_pair import MOST_PRESSURE, MOST_SLIDING, generation_parts, mesh_parts, rack_line
+from centrode.views.gear_pair import (
+    MOST_PRESSURE,
+    MOST_SLIDING,
+    generation_parts,
+    mesh_parts,
+    rack_line,
+    teeth_in_mesh,
+)
 from centrode.views.geometric_drawings import in_degrees
 
 if TYPE_CHECKING:
+    from centrode.gears.involutes import Array
     from centrode.gears.results import GearPairResults
 
 
@@ -44,15 +52,29 @@ def _diagrams(results: GearPairResults) -> Iterator[ScaledDiagram]:
     action = results.line_of_action
     along = action.places - action.places[0]
     across = AxisLabel(symbol=Symbol("s"), unit="m")
-    sliding = np.clip(action.sliding, -MOST_SLIDING, MOST_SLIDING)
     titles = Sentence("Specific sliding of the pinion"), Sentence("Specific sliding of the wheel")
     for number, title in enumerate(titles):
-        curve = ScaledCurve(NOTHING, along, sliding[:, number])
-        yield ScaledDiagram(title, across, AxisLabel(symbol=Symbol("ϑ", str(number + 1))), (curve,))
-    pressure = ScaledCurve(NOTHING, along, np.minimum(action.pressure, MOST_PRESSURE))
-    yield ScaledDiagram(
-        Sentence("Pressure coefficient"), across, AxisLabel(symbol=Symbol("ϑ", "p")), (pressure,)
-    )
+        curve, note = _within(along, action.sliding[:, number], MOST_SLIDING)
+        axis = AxisLabel(symbol=Symbol("ϑ", str(number + 1)))
+        yield ScaledDiagram(_title_up_to(title, note), across, axis, (curve,))
+    curve, note = _within(along, action.pressure, MOST_PRESSURE)
+    title = _title_up_to(Sentence("Pressure coefficient"), note)
+    yield ScaledDiagram(title, across, AxisLabel(symbol=Symbol("ϑ", "p")), (curve,))
+
+
+def _within(along: Array, values: Array, most: float) -> tuple[ScaledCurve, float | None]:
+    """A curve as far as it is drawn, and up to which size it is where it goes beyond."""
+    kept = np.abs(values) <= most
+    if kept.all():
+        return ScaledCurve(NOTHING, along, values), None
+    return ScaledCurve(NOTHING, along[kept], values[kept]), most
+
+
+def _title_up_to(title: Sentence, most: float | None) -> Sentence:
+    """The title, with the size up to which a curve is drawn."""
+    if most is None:
+        return title
+    return Sentence("{title}, drawn up to {most} in size", title=title, most=Number(most))
 
 
 def _generation(results: GearPairResults) -> GeometricDrawing:
@@ -68,6 +90,7 @@ def _mesh(results: GearPairResults) -> GeometricDrawing:
     pieces, circles, action = mesh_parts(results)
     lines = [GeometryLine(piece.places, LineLook.MAIN) for piece in pieces]
     lines += [GeometryLine(circle, LineLook.CHAIN) for circle in circles]
+    lines += [GeometryLine(one.arc(one.wheel.base)) for one in teeth_in_mesh(results)]
     if pair.kind == "rack":
         lines.append(GeometryLine(rack_line(pair), LineLook.MAIN))
     lines.append(GeometryLine(action))

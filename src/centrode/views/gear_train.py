@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.gears.closed_trains import ClosedTrain
 from centrode.gears.planetary_trains import CarrierSeries, OrdinaryTrain, PlanetaryTrain
 from centrode.numerics.outline_pieces import OutlinePiece
 from centrode.sheets.outlines import DrawnLines, LineUse, OutlineDrawing
 from centrode.sheets.plots import AxisLabel, CurveDiagram, Trace
 from centrode.sheets.sheet import Column, Deferred, Fact, Scalar, Sheet, Table
 from centrode.sheets.texts import NOTHING, Joined, Number, Sentence, Symbol, Text, Title
+from centrode.views.closed_train_chapters import member_text, power_flow, shaft_text
 from centrode.views.gear_train_chapters import (
     choice_chapter,
     conditions_chapter,
@@ -22,7 +24,7 @@ from centrode.views.gear_train_chapters import (
 )
 
 if TYPE_CHECKING:
-    from centrode.gears.planetary_trains import AnyTrain
+    from centrode.gears.any_train import AnyTrain
     from centrode.gears.train_results import GearTrainResults
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -33,6 +35,7 @@ SCHEMES = {
     "external meshes": Sentence("planetary, planets with two rims, two external meshes"),
     "internal meshes": Sentence("planetary, planets with two rims in two rings"),
     "two carriers": Sentence("two planetary trains in series"),
+    "closed": Sentence("closed, two planetary sets with two joined shafts"),
     "one pair": Sentence("ordinary, one external pair"),
     "two pairs": Sentence("ordinary, two external pairs"),
 }
@@ -44,6 +47,8 @@ CIRCLE = 73
 
 def sheet(results: GearTrainResults) -> Sheet:
     """Everything there is to say about trains of a ratio, and about the chosen one."""
+    closed = results.chosen if isinstance(results.chosen, ClosedTrain) else None
+    powers = () if closed is None else (powers_table(closed, results),)
     return Sheet(
         facts=tuple(_facts(results)),
         scalars=_scalars(results),
@@ -51,6 +56,7 @@ def sheet(results: GearTrainResults) -> Sheet:
             {
                 "trains": lambda: trains_table(results, None),
                 "members": lambda: members_table(results),
+                **({"powers": lambda: powers_table(closed, results)} if closed is not None else {}),
             }
         ),
         pictures=Deferred(
@@ -66,19 +72,19 @@ def sheet(results: GearTrainResults) -> Sheet:
                 "train-choice": lambda: choice_chapter(
                     results, tuple(_facts(results)), trains_table(results, LISTED)
                 ),
-                "train-conditions": lambda: conditions_chapter(results),
+                "train-conditions": lambda: conditions_chapter(results, powers),
                 "train-motion": lambda: motion_chapter(members_table(results)),
             }
         ),
-        printed=(trains_table(results, LISTED), members_table(results)),
+        printed=(trains_table(results, LISTED), members_table(results), *powers),
         notes=tuple(_notes(results)),
     )
 
 
-def _teeth(train: AnyTrain) -> Text:
+def teeth_text(train: AnyTrain) -> Text:
     """Numbers of teeth: of a planet with one rim once, stages of two carriers apart."""
-    if isinstance(train, CarrierSeries):
-        return Joined(tuple(_teeth(stage) for stage in train.stages), "; ")
+    if isinstance(train, CarrierSeries | ClosedTrain):
+        return Joined(tuple(teeth_text(stage) for stage in train.stages), "; ")
     if isinstance(train, OrdinaryTrain):
         return Joined(tuple(_numbers(pair) for pair in train.pairs), "; ")
     sun, planet, _other, fixed = train.teeth
@@ -100,15 +106,15 @@ def _facts(results: GearTrainResults) -> Iterator[Fact]:
         Sentence("trains with this ratio"),
         Sentence("more than {count}", count=count) if results.found.more else count,
     )
-    yield Fact(Sentence("numbers of teeth"), _teeth(train))
+    yield Fact(Sentence("numbers of teeth"), teeth_text(train))
     ratio = Sentence(
         "{ratio}, deviation {share} %",
         ratio=Number(results.whole_ratio(train)),
         share=Number(100 * results.deviation(train), digits=".3g"),
     )
     yield Fact(Sentence("ratio"), ratio)
-    if isinstance(train, PlanetaryTrain | CarrierSeries):
-        stages = train.stages if isinstance(train, CarrierSeries) else (train,)
+    if not isinstance(train, OrdinaryTrain):
+        stages = (train,) if isinstance(train, PlanetaryTrain) else train.stages
         most = min(stage.most_planets for stage in stages)
         planets = Sentence(
             "{count}, at most {most} fit beside each other",
@@ -122,6 +128,8 @@ def _facts(results: GearTrainResults) -> Iterator[Fact]:
     efficiency = results.efficiency(train)
     locked: Text = Sentence("none: the train locks itself")
     yield Fact(Sentence("efficiency"), locked if efficiency <= 0 else Number(efficiency, digits=".4g"))
+    if isinstance(train, ClosedTrain):
+        yield Fact(Sentence("flow of power"), power_flow(train))
     if described.input_speed is not None or described.output_speed is not None:
         yield Fact(Sentence("speed of the motor"), Number(results.input_speed, "rad/s", unit_fixed=True))
         yield Fact(
@@ -131,7 +139,10 @@ def _facts(results: GearTrainResults) -> Iterator[Fact]:
 
 def _scalars(results: GearTrainResults) -> dict[str, Scalar]:
     train = results.chosen
-    return {
+    closed = {}
+    if isinstance(train, ClosedTrain):
+        closed = {"circulating_power": Scalar(train.circulating_power, "1")}
+    return closed | {
         "trains": Scalar(float(len(results.found.trains)), "1"),
         "ratio": Scalar(results.whole_ratio(train), "1"),
         "deviation": Scalar(results.deviation(train), "1"),
@@ -155,7 +166,8 @@ def _columns(trains: tuple[AnyTrain, ...], *, spelled: bool) -> Iterator[Column]
         letters = [Symbol("z", "1"), Symbol("z", "2"), Symbol("z'", "2"), Symbol("z", "3")]
         shown = [0, 1, 2, 3] if first.scheme.stepped else [0, 1, 3]
     else:
-        shown = [0, 1, 3, 4, 5, 7] if isinstance(first, CarrierSeries) else list(range(len(first.teeth)))
+        two_sets = isinstance(first, CarrierSeries | ClosedTrain)
+        shown = [0, 1, 3, 4, 5, 7] if two_sets else list(range(len(first.teeth)))
         letters = [
             Symbol("z", str(shown.index(place) + 1)) if place in shown else NOTHING for place in range(8)
         ]
@@ -197,23 +209,17 @@ def trains_table(results: GearTrainResults, most: int | None) -> Table:
                 np.array([results.efficiency(train) for train in trains]),
                 head=Sentence("efficiency"),
             ),
+            *_circulating(trains),
         ),
         Sentence("Trains of this ratio, the smallest first"),
     )
 
 
-def _member(name: str) -> Text:
-    """What a member is called."""
-    if name == "crank":
-        return Sentence("crank")
-    kind, number = name.split()
-    which = Number(float(number))
-    words = {
-        "wheel": Sentence("wheel {number}", number=which),
-        "planet": Sentence("planet {number}", number=which),
-        "carrier": Sentence("carrier {number}", number=which),
-    }
-    return words[kind]
+def _circulating(trains: tuple[AnyTrain, ...]) -> Iterator[Column]:
+    """The power that goes round in closed trains."""
+    shares = [train.circulating_power for train in trains if isinstance(train, ClosedTrain)]
+    if shares:
+        yield Column("circulating_power", np.array(shares), head=Sentence("circulating power"))
 
 
 def members_table(results: GearTrainResults) -> Table:
@@ -222,7 +228,7 @@ def members_table(results: GearTrainResults) -> Table:
     driver = results.input_speed
     return Table(
         (
-            Column("member", tuple(_member(one.member) for one in motions), head=Sentence("member")),
+            Column("member", tuple(shaft_text(one.members) for one in motions), head=Sentence("member")),
             Column(
                 "speed",
                 np.array([one.speed for one in motions]),
@@ -240,6 +246,25 @@ def members_table(results: GearTrainResults) -> Table:
     )
 
 
+def powers_table(train: ClosedTrain, results: GearTrainResults) -> Table:
+    """What the members of a closed train carry: without losses, and power with those of the meshes."""
+    ideal, lossy = train.powers(), train.powers(results.efficiencies)
+    return Table(
+        (
+            Column("member", tuple(member_text(one.member) for one in ideal), head=Sentence("member")),
+            Column("speed", np.array([one.speed for one in ideal]), head=Sentence("speed")),
+            Column("moment", np.array([one.moment for one in ideal]), head=Sentence("moment")),
+            Column("power", np.array([one.power for one in ideal]), head=Sentence("power into the set")),
+            Column(
+                "power_with_losses",
+                np.array([one.power for one in lossy]),
+                head=Sentence("the same with losses"),
+            ),
+        ),
+        Sentence("Flow of power, over the driving shaft"),
+    )
+
+
 # Pictures
 
 
@@ -247,7 +272,7 @@ def _velocities(results: GearTrainResults) -> CurveDiagram:
     """Smirnov's triangles: velocities across the line of centres over the places on it, a line for each member."""
     traces = [
         Trace(
-            _member(one.member),
+            shaft_text(one.members),
             one.velocities[np.argsort(one.places)],
             np.sort(one.places),
             marks=np.stack([one.velocities, one.places], axis=-1),
@@ -270,7 +295,7 @@ def _angular_velocities(results: GearTrainResults) -> CurveDiagram:
     """Rays from one pole, parallel to the lines of the velocities: they cut off the angular velocities."""
     traces = [
         Trace(
-            _member(one.member),
+            shaft_text(one.members),
             np.array([0.0, one.speed]),
             np.array([-1.0, 0.0]),
             marks=np.array([[one.speed, 0.0]]),
@@ -312,7 +337,7 @@ def wheels_drawing(results: GearTrainResults) -> OutlineDrawing:
         layers = {"profile": Sentence("driving wheels"), "shoe": Sentence("driven wheels")}
     else:
         layers = {"profile": Sentence("central wheels"), "shoe": Sentence("planets")}
-        stages = train.stages if isinstance(train, CarrierSeries) else (train,)
+        stages = (train,) if isinstance(train, PlanetaryTrain) else train.stages
         for number, stage in enumerate(stages):
             middle = number * 1.1 * train.diameter * 2 * radius
             sun, planet, other, fixed = stage.teeth

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from centrode.gears.closed_trains import ClosedTrain
 from centrode.gears.planetary_trains import (
     INTERNAL,
     TIP,
-    CarrierSeries,
     OrdinaryTrain,
     PlanetaryTrain,
 )
@@ -26,6 +26,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Expression, Leaf, Number, Sentence, Text
+from centrode.views.closed_train_chapters import closed_sections, shaft_facts
 
 if TYPE_CHECKING:
     from centrode.gears.train_results import GearTrainResults
@@ -42,6 +43,8 @@ def data_chapter(results: GearTrainResults, scheme: Text) -> Chapter:
         Fact(Sentence("scheme of the train"), scheme),
         Fact(Sentence("ratio that is sought"), Number(described.whole_ratio)),
     ]
+    if isinstance(results.chosen, ClosedTrain):
+        facts += shaft_facts(results.chosen)
     if described.input_speed is not None:
         facts.append(_speed(Sentence("speed of the motor"), described.input_speed))
     if described.output_speed is not None:
@@ -85,19 +88,28 @@ def choice_chapter(results: GearTrainResults, facts: tuple[Fact, ...], trains: T
     return Chapter(Sentence("Choice of the numbers of teeth"), (Section(NOTHING, blocks),))
 
 
-def conditions_chapter(results: GearTrainResults) -> Chapter:
-    """Ratio, coaxiality, neighbourhood, assembly and efficiency of the chosen train, with their numbers."""
+def conditions_chapter(results: GearTrainResults, powers: tuple[Table, ...]) -> Chapter:
+    """Ratio, coaxiality, neighbourhood, assembly and efficiency of the chosen train, with their numbers.
+
+    `powers` has the table of the flow of power of a closed train.
+    """
     train = results.chosen
     if isinstance(train, OrdinaryTrain):
         sections = [Section(NOTHING, tuple(_ordinary(results, train)))]
+    elif isinstance(train, PlanetaryTrain):
+        sections = [Section(NOTHING, tuple(_planetary(results, train)))]
+    elif isinstance(train, ClosedTrain):
+        sections = [
+            Section(Sentence("Set {number}", number=Number(float(number))), tuple(_set(stage, number)))
+            for number, stage in enumerate(train.stages, 1)
+        ]
+        sections += closed_sections(train, results.efficiencies, powers[0])
     else:
-        stages = train.stages if isinstance(train, CarrierSeries) else (train,)
         sections = [
             Section(
-                Sentence("Train {number}", number=Number(float(number))) if len(stages) > 1 else NOTHING,
-                tuple(_planetary(results, stage)),
+                Sentence("Train {number}", number=Number(float(number))), tuple(_planetary(results, stage))
             )
-            for number, stage in enumerate(stages, 1)
+            for number, stage in enumerate(train.stages, 1)
         ]
     sections.append(Section(Sentence("Whole train"), tuple(_whole(results))))
     return Chapter(Sentence("Ratio, conditions and efficiency"), tuple(sections))
@@ -108,10 +120,37 @@ def _teeth(value: int) -> Number:
 
 
 def _planetary(results: GearTrainResults, train: PlanetaryTrain) -> Iterator[Block]:
+    yield from _willis(train)
+    yield from _conditions(train)
+    yield from _efficiency(results, train)
+
+
+def _set(train: PlanetaryTrain, number: int) -> Iterator[Block]:
+    """A set of a closed train: its own ratio, and the conditions of its teeth."""
+    yield Paragraph(
+        Sentence(
+            "Against the carrier the set is an ordinary train. Its ring has so many times the teeth of its sun:"
+        )
+    )
+    yield Formula(
+        (
+            (
+                f"p_{number}",
+                Expression("frac(z_3, z_1)"),
+                Expression("frac({d}, {a})", d=_teeth(train.teeth[3]), a=_teeth(train.teeth[0])),
+                Number(-float(train.fixed_carrier_ratio)),
+            ),
+        ),
+        "ratio",
+    )
+    yield from _conditions(train)
+
+
+def _willis(train: PlanetaryTrain) -> Iterator[Block]:
+    """The ratio against the carrier, and with wheel 3 at rest."""
     sun, planet, other, fixed = train.teeth
-    scheme, stepped = train.scheme, train.scheme.stepped
-    second = "z'_2" if stepped else "z_2"
-    sign = "-" if scheme.sun * scheme.fixed < 0 else ""
+    sign = "-" if train.scheme.sun * train.scheme.fixed < 0 else ""
+    stepped = train.scheme.stepped
     letters = f"{sign}frac(z_2 z_3, z_1 z'_2)" if stepped else "-frac(z_3, z_1)"
     numbers = f"{sign}frac({{b}} dot {{d}}, {{a}} dot {{c}})" if stepped else "-frac({d}, {a})"
     values: dict[str, Leaf] = {"a": _teeth(sun), "b": _teeth(planet), "c": _teeth(other), "d": _teeth(fixed)}
@@ -126,9 +165,15 @@ def _planetary(results: GearTrainResults, train: PlanetaryTrain) -> Iterator[Blo
     if train.driver == "carrier":
         lines.append(('u_("H" 1)', Expression('frac(1, u_(1 "H"))'), Number(float(train.ratio))))
     yield Formula(tuple(lines), "ratio")
+
+
+def _conditions(train: PlanetaryTrain) -> Iterator[Block]:
+    """Coaxial axes, neighbours, assembly."""
+    sun, planet, other, fixed = train.teeth
+    scheme, second = train.scheme, "z'_2" if train.scheme.stepped else "z_2"
     yield Paragraph(
         Sentence(
-            "Sun, carrier and fixed wheel have one axis where both meshes give one radius of the carrier:"
+            "Wheels 1 and 3 and the carrier have one axis where both meshes give one radius of the carrier:"
         )
     )
     first, last = ("-" if scheme.sun == INTERNAL else "+"), ("-" if scheme.fixed == INTERNAL else "+")
@@ -150,7 +195,6 @@ def _planetary(results: GearTrainResults, train: PlanetaryTrain) -> Iterator[Blo
     if train.planets > 1:
         yield from _neighbours(train)
         yield from _assembly(train)
-    yield from _efficiency(results, train)
 
 
 def _used_letters(notation: str, values: dict[str, Leaf]) -> dict[str, Leaf]:

@@ -60,6 +60,8 @@ PENS: Mapping[LineUse, dict[str, Any]] = {
     LineUse.FOLLOWER: {"color": FOLLOWER, "linewidth": 2.0, "zorder": 4, "solid_capstyle": "round"},
     LineUse.NORMAL: {"color": MUTED, "linewidth": 0.6, "zorder": 2},
     LineUse.UNDERCUT: {"color": "#B00020", "linewidth": 2.4, "zorder": 5},
+    LineUse.WORKING: {"color": PALETTE[1], "linewidth": 3.0, "zorder": 5, "solid_capstyle": "round"},
+    LineUse.CIRCLE: BASE_CIRCLE,
 }
 
 
@@ -99,9 +101,10 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
                 assert_never(shape)
     places = np.concatenate([piece.places for piece in drawing.pieces])
     extent = factor * max(float(np.ptp(places, axis=0).max()), 1e-9)
-    cross(axes, np.zeros(2), CROSS * extent, INK)
-    centre = Line2D([], [], color=INK, marker="x", linestyle="none")
-    key.append((centre, spelling.text(drawing.centre)))
+    if drawing.centre != NOTHING:
+        cross(axes, np.zeros(2), CROSS * extent, INK)
+        centre = Line2D([], [], color=INK, marker="x", linestyle="none")
+        key.append((centre, spelling.text(drawing.centre)))
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(ROOM)
     axes.set_xlabel(label_with_unit("x", unit))
