@@ -177,8 +177,8 @@ CAMPAIGN = Campaign(
     "Source files of mechanisms",
     "What printed source files compute, in C by gcc, in JavaScript by Node, in Python and in Octave, against motions "
     "of the program with the same numbers: in C all built-in linkages, in the others twenty, each with 20 sets of "
-    "lengths and places of fixed points that are drawn at random; Python looks at every fourth place and Octave at every "
-    "twelfth.",
+    "lengths and places of fixed points that are drawn at random; Python looks at every fourth place and Octave at "
+    "every twelfth.",
     COLUMNS,
     run,
     len(cases()),
