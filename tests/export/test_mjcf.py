@@ -100,12 +100,6 @@ def test_masses_and_gravity_are_those_of_the_description() -> None:
     assert float(model.body("CD").inertia.max()) == pytest.approx(0.55, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["hookes-joint"])
-def test_what_is_not_in_the_model_is_refused(name: str) -> None:
-    with pytest.raises(ct.NotComputedYet):
-        model_of(name)
-
-
 def test_hostile_names_are_names() -> None:
     text = ct.mechanism_text(ct.example("crank-rocker")).replace(
         'title = "', 'title = "<a href=\\"x\\">& ', 1

@@ -151,7 +151,7 @@ def spanning_tree(pairs: list[Pair], light: Collection[str] = ()) -> Tree:
     reach(FRAME, sliding)
     while waiting:
         reach(waiting.popleft(), pairs)
-    for pair in _left_over(pairs, used):
+    for pair in left_over(pairs, used):
         if pair.direction is None:
             tree.closures.append(pair)
             continue
@@ -162,8 +162,8 @@ def spanning_tree(pairs: list[Pair], light: Collection[str] = ()) -> Tree:
     return tree
 
 
-def _left_over(pairs: list[Pair], used: list[Pair]) -> list[Pair]:
-    """Pairs that the tree does not keep by itself: of the hinges at one point, as many as join what is still apart."""
+def left_over(pairs: list[Pair], used: list[Pair]) -> list[Pair]:
+    """Pairs that a tree of the used ones does not keep: of the hinges at one point, those that join what is apart."""
     left = [pair for pair in pairs if pair.point is None and pair not in used]
     for point in dict.fromkeys(pair.point for pair in pairs if pair.point is not None):
         joined: dict[str, str] = {}

@@ -28,6 +28,7 @@ from centrode.export.body_trees import (
     THIN,
     Pair,
     Tree,
+    left_over,
     number,
     numbers,
     outline,
@@ -69,6 +70,8 @@ Vector: TypeAlias = tuple[float, float, float]
 
 PARALLEL = 1e-9
 """Sine of the angle below which two axes are one."""
+ROUNDED = 1e-12
+"""Part of a tensor's trace that is added to its moments."""
 CHORDS = 8
 """Straight pieces that an arc is drawn with."""
 
@@ -97,9 +100,7 @@ class SpherePose:
         names = [FRAME, *mechanism.link_names, *(slider_name(guide.id) for guide in mechanism.guides)]
         self.axes: dict[str, Array] = dict(zip(names, bodies.axes[0], strict=True))
         self.spins: dict[str, Array] = dict(zip(names, bodies.speed[0], strict=True))
-        self.tree: Tree = spanning_tree(
-            list(_hinges(self)), [slider_name(guide.id) for guide in mechanism.guides]
-        )
+        self.tree: Tree = _tree_of(list(_hinges(self)))
         self.masses: dict[str, Mass] = {mass.link: mass for mass in masses_of(mechanism)}
         self.pace = max(pace_of(drive, 1.0) for drive in mechanism.drives) or 1.0
         self.step = min(LONGEST_STEP, 2 * math.pi / self.pace / STEPS)
@@ -131,14 +132,17 @@ class SpherePose:
                 tensor += 0.5 * float(part.moment) * (np.eye(3) + along)
             else:
                 tensor += float(part.moment) * (np.eye(3) - along)
+        # of a thin disc the greatest moment is the sum of the others, which MuJoCo's rounding may break
+        tensor += ROUNDED * float(np.trace(tensor)) * np.eye(3)
         if float(np.linalg.eigvalsh(tensor)[0]) < nominal:
             tensor += nominal * np.eye(3)
         centre = float(known.centre.distance) * (axes @ np.array(known.centre.direction, dtype=np.float64))
         return max(float(known.mass), self.least), _vector(centre), tensor
 
     def _check_ring(self, name: str, direction: Array) -> None:
-        pair, parent = self.tree.joints[name]
-        if parent == FRAME and float(np.linalg.norm(np.cross(direction, _axis(pair)))) <= PARALLEL:
+        fixed = self.mechanism.frame.points
+        shafts = [self.places[point] for point in self.mechanism.points_of(name) if point in fixed]
+        if any(float(np.linalg.norm(np.cross(direction, shaft))) <= PARALLEL for shaft in shafts):
             return
         what = _("the moving link {link} is a ring and a point mass, which no body of MuJoCo is").format(
             link=name
@@ -176,7 +180,7 @@ class SpherePose:
         assert drive.link is not None
         spin = _shared_point(self.mechanism, drive.link, drive.relative_to)
         joints = self.turn_about(spin, drive.link, drive.relative_to)
-        assert joints is not None  # pairs of drives come first in the tree
+        assert joints is not None  # the tree keeps hinges of drives before all others
         return joints
 
     def order(self, body: str) -> list[str]:
@@ -206,13 +210,13 @@ def _shared_point(mechanism: Mechanism, link: str, other: str) -> str:
 
 
 def _hinges(pose: SpherePose) -> Iterator[Pair]:
-    """All hinges: those that drives, gears and loads are told by come first, so that the tree keeps them."""
+    """All hinges, those that the tree is to keep first."""
     mechanism, centre = pose.mechanism, (0.0, 0.0)
     members: dict[str, list[str]] = {}
     for body in (FRAME, *mechanism.link_names):
         for point in mechanism.points_of(body):
             members.setdefault(point, []).append(body)
-    found = []
+    found: list[Pair] = []
     for guide in mechanism.guides:
         slider = slider_name(guide.id)
         members[guide.point].append(slider)
@@ -225,16 +229,43 @@ def _hinges(pose: SpherePose) -> Iterator[Pair]:
             Pair(f"{one} {other} {point}", one, other, centre, point=point, axis=pose.places[point])
             for one, other in combinations(bodies, 2)
         ]
+    ranks = _ranks(mechanism)
+    yield from sorted(found, key=lambda pair: ranks.get(frozenset((pair.first, pair.second)), len(ranks)))
+
+
+def _ranks(mechanism: Mechanism) -> dict[frozenset[str], int]:
+    """Two bodies -> how much the tree has to keep a hinge of theirs: of drives most, then of gears and of loads."""
     told = [(drive.link, drive.relative_to) for drive in mechanism.drives if drive.link is not None]
-    told += [(guide.on, slider_name(guide.id)) for guide in mechanism.guides]
     told += [(link, gear.carrier) for gear in mechanism.gears for link in gear.links]
-    told += [
-        (load.link, load.relative_to)
-        for load in mechanism.loads
-        if isinstance(load, HingeSpring | HingeDamper | HingeFriction | Torque)
-    ]
-    first = {frozenset(pair) for pair in told}
-    yield from sorted(found, key=lambda pair: frozenset((pair.first, pair.second)) not in first)
+    for guide in mechanism.guides:
+        # constraints are as soft as the lightest body that they join: loops do not close at sliders
+        told += [(body, slider_name(guide.id)) for body in (guide.on, *mechanism.link_names)]
+    turned = (HingeSpring, HingeDamper, HingeFriction, Torque)
+    told += [(load.link, load.relative_to) for load in mechanism.loads if isinstance(load, turned)]
+    found: dict[frozenset[str], int] = {}
+    for rank, bodies in enumerate(told):
+        found.setdefault(frozenset(bodies), rank)
+    return found
+
+
+def _tree_of(hinges: list[Pair]) -> Tree:
+    """The tree that keeps the first hinges rather than the later."""
+    joined: dict[str, str] = {}
+
+    def root(body: str) -> str:
+        while body in joined:
+            body = joined[body]
+        return body
+
+    kept = []
+    for pair in hinges:
+        first, second = root(pair.first), root(pair.second)
+        if first != second:
+            joined[first] = second
+            kept.append(pair)
+    tree = spanning_tree(kept)
+    tree.closures = left_over(hinges, kept)
+    return tree
 
 
 # Bodies, and the constraints that close their loops.
