@@ -252,8 +252,8 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
     return _document(pose, loads, free, _starting_pace(mechanism) if free else 1.0)
 
 
-def omitted_loads(mechanism: Mechanism, motion: xarray.Dataset) -> tuple[str, ...]:
-    """Labels of the loads that a model of MuJoCo does not hold: formulas, tables, diagrams, dry friction, weights."""
+def omitted_loads(mechanism: Mechanism, motion: xarray.Dataset) -> Mapping[str, str]:
+    """Labels of the loads that a model of MuJoCo does not hold, and why: formulas, tables, dry friction and others."""
     return _model_of(mechanism, motion, free=False)[1].omitted
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias, assert_never
+from typing import TypeAlias, assert_never
 from xml.etree import ElementTree as ET
 
 from centrode.export.body_trees import Pose, number, numbers, turn_vector
+from centrode.locale import _
 from centrode.model.loads import (
     AnyLoad,
     BearingFriction,
@@ -28,9 +29,6 @@ from centrode.model.loads import (
     numbered_names,
 )
 from centrode.model.mechanism import FRAME, Mechanism
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 WORLD_SITE = "axes of the frame"
 """The site in whose axes constant forces act."""
@@ -69,12 +67,12 @@ HeldLoad: TypeAlias = TendonLoad | ActuatorLoad | OwnWeight
 
 @dataclass(frozen=True)
 class ModelLoads:
-    """Loads of a model, and the labels of those that it does not hold."""
+    """Loads of a model, and the labels of those that it does not hold, with why."""
 
     tendons: tuple[TendonLoad, ...]
     actuators: tuple[ActuatorLoad, ...]
     weights: tuple[OwnWeight, ...]
-    omitted: tuple[str, ...]
+    omitted: Mapping[str, str]
 
 
 def labelled_loads(mechanism: Mechanism) -> Iterator[tuple[str, AnyLoad]]:
@@ -100,8 +98,30 @@ def held_loads(mechanism: Mechanism, held: Callable[[str, AnyLoad], HeldLoad | N
             and isinstance(force, ActuatorLoad)
         ),
         tuple(x for x in found.values() if isinstance(x, OwnWeight)),
-        tuple(label for label, x in found.items() if x is None),
+        {label: reason_left_out(load) for label, load in labelled_loads(mechanism) if found[label] is None},
     )
+
+
+def reason_left_out(load: AnyLoad) -> str:
+    """Why a model of MuJoCo does not hold a load: it has numbers, springs and dampers, and no functions."""
+    given = {name: value for name, value in load if value is not None}
+    friction = isinstance(load, HingeFriction | GuideFriction | BearingFriction | SliderFriction)
+    amounts = [x for name in ("value", "vector") for x in _all_of(given.get(name))]
+    if "table" in given:
+        return _("a table")
+    if any(isinstance(amount, str) for amount in amounts):
+        return _("a formula")
+    if friction:
+        return _("dry or quadratic friction")
+    if given.get("while_moving"):
+        return _("acts in one sense of motion alone")
+    if isinstance(load, LinkWeight):
+        return _("the weight of a link without a mass")
+    return _("no joints of the model give its coordinate")
+
+
+def _all_of(value: object) -> Sequence[object]:
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _model_load(pose: Pose, name: str, load: AnyLoad) -> HeldLoad | None:
