@@ -26,7 +26,7 @@ from centrode.render.figures.linkages import draw, initial_sample, read_scene
 from centrode.scenes.sphere import Globe
 from centrode.sheets.outlines import DrawnLines
 from centrode.views.gear_train import wheels_drawing
-from tools import synthesis_gallery
+from tools import exchange_gallery, synthesis_gallery
 
 DOCS = Path(__file__).parents[1] / "docs"
 FOLDER = DOCS / "images" / "gallery"
@@ -106,7 +106,7 @@ def page() -> str:
     """The page: pictures side by side, each with its title and its name."""
     linkages = _table(ct.example_names("linkage"))
     gears = _table([name for kind in GEARS for name in ct.example_names(kind)])
-    return f"{HEAD}\n{linkages}\n{HEAD_OF_GEARS}\n{gears}\n{synthesis_gallery.section()}"
+    return f"{HEAD}\n{linkages}\n{HEAD_OF_GEARS}\n{gears}\n{synthesis_gallery.section()}\n{exchange_gallery.section()}"
 
 
 def _table(names: Sequence[str]) -> str:

@@ -18,9 +18,12 @@ import centrode as ct
 from centrode.errors import Status
 from centrode.export.freecad import freecad_macro
 from centrode.model.files import parse_mechanism
+from samples import ALL
 
 PROGRAM = shutil.which("freecadcmd") or shutil.which("freecadcmd-python3")
 NAMES = ("crank-rocker", "klann-leg", "six-bar-press", "pantograph")
+PLANAR = tuple(name for name in ct.example_names() if ct.example(name).space == "plane")
+IN_FREECAD = PLANAR if ALL else (*NAMES, "three-crank-parallelogram")
 
 
 class Recorder:
@@ -37,7 +40,9 @@ class Recorder:
 
         def add_object(kind: str, _name: str) -> Any:
             if kind.startswith("Sketcher"):
-                return SimpleNamespace(addGeometry=self._add_line, addConstraint=self.constraints.append)
+                return SimpleNamespace(
+                    addGeometry=self._add_line, addConstraint=self.constraints.append, solve=lambda: 0
+                )
             body = SimpleNamespace()
             self.bodies[str(len(self.bodies))] = body
             return body
@@ -132,19 +137,55 @@ def test_bars_move_as_the_motion(name: str) -> None:
             assert np.abs(np.array(found) - wanted).max() <= 1e-9 * 1000.0 * 5.0
 
 
+LOOKED_AT = """
+import json
+
+solved = sketch.solve()
+document.recompute()
+found = {"solved": solved, "state": [str(word) for word in sketch.State], "kinds": [], "lines": [], "bars": {}}
+for constraint in sketch.Constraints:
+    found["kinds"].append(constraint.Type)
+for line in sketch.Geometry:
+    found["lines"].append([[end.x, end.y] for end in (line.StartPoint, line.EndPoint)])
+for k in range(0, POSITIONS, 2):
+    show(k)
+    document.recompute()
+    for link, first, second, _base in SIDES:
+        for point in (first, second) if link in PLACEMENTS else ():
+            place = bodies[link].Placement.multVec(V(*PLACES[point], 0))
+            found["bars"].setdefault(point, {})[k] = [place.x, place.y, place.z]
+print("FOUND", json.dumps(found))
+"""
+
+
 @pytest.mark.skipif(PROGRAM is None, reason="FreeCAD is not installed")
-def test_freecad_solves_the_sketch(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", IN_FREECAD)
+def test_freecad_solves_the_sketch_and_moves_the_bars(name: str, tmp_path: Path) -> None:
     assert PROGRAM is not None
-    macro = tmp_path / "macro.py"
-    told = "[sketch.solve(), len(document.Objects), sketch.GeometryCount]"
-    ending = f'\nimport json\nprint("FOUND", json.dumps({told}))\n'
-    macro.write_text(freecad_macro("klann-leg") + ending, encoding="utf-8")
+    macro, text = tmp_path / "macro.py", freecad_macro(name, 13)
+    motion = ct.motion(name, 13)
+    reached = motion.position.values[motion.status.values == Status.OK]
+    macro.write_text(f"{text}\nPOSITIONS = {len(reached)}\n{LOOKED_AT}", encoding="utf-8")
     ended = subprocess.run(
         [PROGRAM, str(macro)], input="", capture_output=True, text=True, timeout=120, check=False
     )
-    line = next(line for line in ended.stdout.splitlines() if line.startswith("FOUND"))
-    solved, objects, lines = json.loads(line.removeprefix("FOUND "))
-    assert solved == 0 and objects > 3 and lines > 6
+    (line,) = [line for line in ended.stdout.splitlines() if "FOUND {" in line]
+    found = json.loads(line.partition("FOUND ")[2])
+    assert (found["solved"], found["state"]) == (0, ["Up-to-date"])
+    names = Recorder().run(text)
+    size = float(np.ptp(np.array(list(names["PLACES"].values())), axis=0).max())
+    # solved, the sketch stands where it is drawn, fixed points above all
+    ends = np.array([[names["PLACES"][x] for x in side[1:3]] for side in names["SIDES"]])
+    assert np.abs(np.array(found["lines"]) - ends).max() <= 1e-9 * size
+    drawn = {point for side in names["SIDES"] for point in side[1:3]}
+    assert found["kinds"].count("DistanceY") == len(drawn & set(names["FIXED"]))
+    assert set(found["bars"]) == {
+        point for side in names["SIDES"] if side[0] in names["PLACEMENTS"] for point in side[1:3]
+    }
+    for point, places in found["bars"].items():
+        wanted = 1000.0 * reached[:, list(motion.point.values).index(point)]
+        for k, (x, y, z) in places.items():
+            assert np.abs(np.array([x, y]) - wanted[int(k)]).max() <= 1e-9 * size and z == 0.0, (point, k)
 
 
 def test_hostile_titles_are_comments() -> None:

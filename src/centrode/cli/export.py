@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -174,10 +174,11 @@ def _write_fmu(
     click.echo(output.wrote([out]))
 
 
-def _tell_omitted(labels: Sequence[str]) -> None:
-    """A line that names the loads that a model does not hold."""
-    if labels:
-        output.tell(_("not in the model: {loads}").format(loads=", ".join(labels)))
+def _tell_omitted(omitted: Mapping[str, str]) -> None:
+    """A line that names the loads that a model does not hold, and why."""
+    if omitted:
+        loads = ", ".join(f"{label} ({reason})" for label, reason in omitted.items())
+        output.tell(_("not in the model: {loads}").format(loads=loads))
 
 
 def _refuse_options(kind: str, options: dict[str, Any]) -> None:

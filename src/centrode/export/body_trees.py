@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.state import Centre
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Drive, Guide
 
 Place: TypeAlias = tuple[float, float]
+Corner = TypeVar("Corner")
 
 
 @dataclass(frozen=True)
@@ -37,9 +38,10 @@ class Pair:
     Attributes
     ----------
     name : of the joint in the model
-    place : where the point is initially [m]
+    place : where the point is initially [m]; the centre of the sphere, where all axes meet
     direction : along which the second slides on the first; None for a hinge
     point : the hinge's name; None for a pair that slides
+    axis : on the sphere, where the hinge's axis points initially
     """
 
     name: str
@@ -48,6 +50,7 @@ class Pair:
     place: Place
     direction: Place | None = None
     point: str | None = None
+    axis: tuple[float, float, float] | None = None
 
 
 @dataclass
@@ -119,14 +122,18 @@ def tree_of(
     contacts: Sequence[WheelBody] = (),
     light: Collection[str] = (),
 ) -> Tree:
-    """The tree; `places` of the points and `directions` of the guides are those of the initial position [m].
+    """The tree; `places` of the points and `directions` of the guides are those of the initial position [m]."""
+    return spanning_tree(_pairs(mechanism, places, directions, contacts), light)
+
+
+def spanning_tree(pairs: list[Pair], light: Collection[str] = ()) -> Tree:
+    """The tree of bodies that pairs join, the first ones kept rather than the later.
 
     What slides on a body is reached from it at once: loops then close in hinges. A loop of prismatic pairs alone closes
     in a carriage: a body that slides like the last of them, and is pinned where that one is, as none of them turns
     against another. Loops do not close at bodies that are `light` where it can be helped: constraints are as soft as
     the lightest body that they join.
     """
-    pairs = _pairs(mechanism, places, directions, contacts)
     tree, waiting, known = Tree(), deque([FRAME]), {FRAME}
     used: list[Pair] = []
 
@@ -144,7 +151,7 @@ def tree_of(
     reach(FRAME, sliding)
     while waiting:
         reach(waiting.popleft(), pairs)
-    for pair in _left_over(pairs, used):
+    for pair in left_over(pairs, used):
         if pair.direction is None:
             tree.closures.append(pair)
             continue
@@ -155,8 +162,8 @@ def tree_of(
     return tree
 
 
-def _left_over(pairs: list[Pair], used: list[Pair]) -> list[Pair]:
-    """Pairs that the tree does not keep by itself: of the hinges at one point, as many as join what is still apart."""
+def left_over(pairs: list[Pair], used: list[Pair]) -> list[Pair]:
+    """Pairs that a tree of the used ones does not keep: of the hinges at one point, those that join what is apart."""
     left = [pair for pair in pairs if pair.point is None and pair not in used]
     for point in dict.fromkeys(pair.point for pair in pairs if pair.point is not None):
         joined: dict[str, str] = {}
@@ -245,7 +252,7 @@ def contact_name(wheel: str) -> str:
     return f"track {wheel}"
 
 
-def outline(places: list[Place]) -> list[tuple[Place, Place]]:
+def outline(places: Sequence[Corner]) -> list[tuple[Corner, Corner]]:
     """Lines between the points of a body, in their order and closed where there are more than two."""
     closed = [*places, places[0]] if len(places) > 2 else places
     return list(pairwise(closed))

@@ -82,7 +82,7 @@ class FmuProgram:
             "WRAPS": str(int(wraps)), "PERIOD": known(2.0 * pi)[0], "INPUTS": str(len(inputs)),
             "START_INPUTS": numbers_text(inputs), "STATES": str(len(states)), "START_STATES": numbers_text(states),
             "FIRST_PLACE": known(float(program.numbers["initial"]))[0], "SHAFT_INERTIA": known(self.shaft_inertia)[0],
-            "TOKEN": f'"{self.token}"',
+            "DRIVE_UNIT": known(float(program.numbers["unit"]))[0], "TOKEN": f'"{self.token}"',
         }  # fmt: skip
         rows = ", ".join(str(k) for k in self.outputs) or "0"
         turned = ", ".join(str(int(x.quantity in ANGLES)) for x in results) or "0"

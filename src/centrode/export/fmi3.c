@@ -1,5 +1,5 @@
 /* FMI 3.0 around a model: model exchange and co-simulation. The model stands before: its type fmu_model with prepare_model, rates,
- * outputs_of and close_states; and OUTPUTS, PARAMETERS, INPUTS, STATES, START_INPUTS, START_STATES, MODEL_DIMENSIONS and TOKEN.
+ * outputs_of, nominal_position and close_states; and OUTPUTS, PARAMETERS, INPUTS, STATES, START_INPUTS, START_STATES, MODEL_DIMENSIONS and TOKEN.
  *
  * Variables by their references: 0 time; from 1 inputs; 10 status; 11 tolerance of co-simulation; from 100 dimensions; from 1000
  * outputs; from 100000 states; from 200000 their derivatives.
@@ -254,9 +254,28 @@ EXPORTED fmi3Status fmi3GetContinuousStateDerivatives(void *p, double derivative
     return fmi3OK;
 }
 
+/* Positions count in radians or sizes of the mechanism, their speeds in what the mechanism gains within one of them: integrators of
+ * importers take absolute tolerances from these, and lose steps and digits where speeds of 1000 rad/s are held to those of 1 rad/s.
+ */
 EXPORTED fmi3Status fmi3GetNominalsOfContinuousStates(void *p, double nominals[], size_t count) {
-    (void)p;
-    for (size_t k = 0; k < count; k++) nominals[k] = 1.0;
+#if STATES
+    enum { POSITIONS = STATES / 2 };
+    instance *c = p;
+    double pace = 0.0;
+    if (evaluate(c) != fmi3OK) return fmi3Error;
+    for (int k = 0; k < POSITIONS; k++) {
+        const double unit = nominal_position(k), speed = fabs(c->state[POSITIONS + k]) / unit;
+        const double gained = sqrt(fabs(c->derivative[POSITIONS + k]) / unit);
+        if (speed > pace) pace = speed;
+        if (gained > pace) pace = gained;
+    }
+    if (!(pace > 0.0 && pace < INFINITY)) pace = 1.0;
+    for (int k = 0; k < STATES && (size_t)k < count; k++) {
+        nominals[k] = k < POSITIONS ? nominal_position(k) : pace * nominal_position(k - POSITIONS);
+    }
+#else
+    (void)p; (void)nominals; (void)count;
+#endif
     return fmi3OK;
 }
 

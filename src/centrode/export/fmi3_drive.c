@@ -1,6 +1,7 @@
 /* The motion of one drive as a model: its reduced equation, or its value, speed and acceleration as inputs. The printed motion stands
  * before, and defines: MODEL, the type of its record; PREPARE and AT, its functions; MODEL_DIMENSIONS; output_rows, and output_turns,
- * whether whole turns of the drive are added; DYNAMIC, WRAPS, PERIOD, FIRST_PLACE and SHAFT_INERTIA.
+ * whether whole turns of the drive are added; DYNAMIC, WRAPS, PERIOD, FIRST_PLACE, DRIVE_UNIT, what its
+ * displacements are compared with, and SHAFT_INERTIA.
  */
 typedef struct {
     MODEL motion;
@@ -59,6 +60,14 @@ static int outputs_of(fmu_model *m, double time, const double inputs[], const do
     for (int k = 0; k < OUTPUTS; k++) output[k] = m->motion.row[output_rows[k]] + turns * m->turned[k];
     return status;
 }
+
+#if STATES
+/* What positions of the drive count in: a radian, or the size of the mechanism. */
+static double nominal_position(int k) {
+    (void)k;
+    return DRIVE_UNIT;
+}
+#endif
 
 /* Every state of one drive is a position. */
 static double close_states(fmu_model *m, double time, double state[]) {

@@ -40,6 +40,9 @@ static int outputs_of(fmu_model *m, double time, const double inputs[], const do
     return m->closed[2 * COORDINATES] > LOST ? 0 : SINGULAR;
 }
 
+/* What a coordinate counts in: a radian, or the size of the mechanism. */
+static double nominal_position(int k) { return coordinate_is_length[k] ? LENGTH : 1.0; }
+
 /* Close the position and fit the speeds by one step of Newton's method; returns how long the next step may be, so that it passes no
  * change point, or less than 0 at one.
  */
@@ -49,7 +52,7 @@ static double close_states(fmu_model *m, double time, double state[]) {
     evaluate_closing(m);
     for (int k = 0; k < 2 * COORDINATES; k++) state[k] = m->closed[k];
     for (int k = 0; k < COORDINATES; k++) {
-        const double speed = fabs(m->closed[COORDINATES + k]) / (coordinate_is_length[k] ? LENGTH : 1.0);
+        const double speed = fabs(m->closed[COORDINATES + k]) / nominal_position(k);
         if (speed > fastest) fastest = speed;
     }
     const double independence = m->closed[2 * COORDINATES];

@@ -52,16 +52,18 @@ for link, first, second, base in SIDES:
             sketch.addConstraint(Sketcher.Constraint("Coincident", line, end, *ends[point]))
         else:
             ends[point] = (line, end)
-for (link, first, second, base), line in zip(SIDES, lines):
-    length = math.dist(PLACES[first], PLACES[second])
-    sketch.addConstraint(Sketcher.Constraint("Distance", line, 1, line, 2, length))
-    if base >= 0:  # a point on the line of the first side
-        sketch.addConstraint(Sketcher.Constraint("PointOnObject", line, 2, lines[base]))
 for point in FIXED:
     if point in ends:
         x, y = PLACES[point]
         sketch.addConstraint(Sketcher.Constraint("DistanceX", -1, 1, *ends[point], x))
         sketch.addConstraint(Sketcher.Constraint("DistanceY", -1, 1, *ends[point], y))
+for (link, first, second, base), line in zip(SIDES, lines):
+    length = math.dist(PLACES[first], PLACES[second])
+    sketch.addConstraint(Sketcher.Constraint("Distance", line, 1, line, 2, length))
+    if base >= 0:  # a point on the line of the first side
+        sketch.addConstraint(Sketcher.Constraint("PointOnObject", line, 2, lines[base]))
+if sketch.solve() == -2:  # a link too many for the mobility, as the third crank of a parallelogram: its length follows
+    sketch.autoRemoveRedundants(True)
 
 # The bars: one body for each link, drawn where it stands initially.
 

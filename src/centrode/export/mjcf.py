@@ -1,10 +1,10 @@
-"""A planar linkage as a model of MuJoCo: bodies below each other, constraints of loops and gears, actuators."""
+"""A linkage as a model of MuJoCo: bodies below each other, constraints of loops and gears, actuators."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 from xml.etree import ElementTree as ET
 
 from centrode.errors import NotComputedYet
@@ -20,7 +20,20 @@ from centrode.export.body_trees import (
     numbers,
     outline,
 )
-from centrode.export.mjcf_loads import WORLD_SITE, ModelLoads, add_tendons, model_loads
+from centrode.export.mjcf_loads import (
+    WORLD_SITE,
+    ModelLoads,
+    add_tendons,
+    fixed_tendon,
+    model_loads,
+    tendons_of,
+)
+from centrode.export.mjcf_sphere import (
+    SpherePose,
+    add_turning_body,
+    add_turning_constraints,
+    turning_loads,
+)
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -28,6 +41,8 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Drive
+
+ModelPose: TypeAlias = Pose | SpherePose
 
 # Bodies of the model: joints, masses, what is drawn of them, and the bodies that hang on them.
 
@@ -91,14 +106,12 @@ def add_constraints(pose: Pose, root: ET.Element) -> None:
     gears = pose.mechanism.gears
     if not pose.tree.closures and not gears and not pose.contacts:
         return
-    if gears or pose.contacts:
-        tendons = _tendons(root)
-        for gear in gears:
-            first, second = gear.links
-            _fixed_tendon(tendons, f"gear {gear.id}", pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0,
-                                                            first: -gear.ratio}))  # fmt: skip
-        for contact in pose.contacts:
-            _fixed_tendon(tendons, contact.pair.name, _rolling(pose, contact))
+    for gear in gears:
+        first, second = gear.links
+        turns = pose.turns({second: 1.0, gear.carrier: gear.ratio - 1.0, first: -gear.ratio})
+        fixed_tendon(root, f"gear {gear.id}", turns)
+    for contact in pose.contacts:
+        fixed_tendon(root, contact.pair.name, _rolling(pose, contact))
     equality = ET.SubElement(root, "equality")
     for pair in pose.tree.closures:
         _closure(pose, equality, pair)
@@ -129,7 +142,7 @@ def _closure(pose: Pose, equality: ET.Element, pair: Pair) -> None:
 
 
 def add_actuators(
-    pose: Pose, root: ET.Element, loads: ModelLoads, kept: Sequence[Drive], rates: list[float]
+    pose: ModelPose, root: ET.Element, loads: ModelLoads, kept: Sequence[Drive], rates: list[float]
 ) -> None:
     """Actuators of the drives that are kept and of constant loads, and the key frame that turns them on."""
     controls: dict[str, float] = {}
@@ -154,21 +167,17 @@ def _transmission(root: ET.Element, name: str, joints: Mapping[str, float]) -> d
     """What an actuator acts on: a joint, or a tendon whose length is a sum of coordinates."""
     if len(joints) == 1 and next(iter(joints.values())) == 1.0:
         return {"joint": next(iter(joints))}
-    _fixed_tendon(_tendons(root), name, joints)
+    fixed_tendon(root, name, joints)
     return {"tendon": name}
 
 
-def _tendons(root: ET.Element) -> ET.Element:
-    found = root.find("tendon")
-    return ET.SubElement(root, "tendon") if found is None else found
-
-
 def _actuator(
-    pose: Pose, root: ET.Element, parent: ET.Element, drive: Drive, said: Mapping[str, str]
+    pose: ModelPose, root: ET.Element, parent: ET.Element, drive: Drive, said: Mapping[str, str]
 ) -> None:
     """A drive that keeps its speed, or follows the value of its law."""
     heavy = sum(float(mass.mass) for mass in pose.masses.values()) or NOMINAL * len(pose.tree.joints)
-    scale = heavy * (pose.size**2 if drive.kind == "angle" else 1.0)
+    turns = drive.kind == "angle" or isinstance(pose, SpherePose)
+    scale = heavy * (pose.size**2 if turns else 1.0)
     if drive.speed is not None:
         ET.SubElement(parent, "velocity", {"kv": number(scale / (REACHED * pose.step)), **said})
         return
@@ -181,11 +190,20 @@ def _actuator(
                 one.set("armature", number(ROTOR * scale))
 
 
-def _fixed_tendon(tendons: ET.Element, name: str, joints: Mapping[str, float]) -> None:
-    """A tendon whose length is a sum of coordinates."""
-    tendon = ET.SubElement(tendons, "fixed", name=name)
-    for joint, factor in joints.items():
-        ET.SubElement(tendon, "joint", joint=joint, coef=number(factor))
+def _add_bodies(pose: ModelPose, root: ET.Element, world: ET.Element) -> None:
+    """Points of the frame, bodies, and the constraints of loops and gears."""
+    for point in pose.mechanism.frame.points:
+        place = (*pose.places[point], 0.0) if isinstance(pose, Pose) else pose.at(point)
+        ET.SubElement(world, "site", name=f"{FRAME}.{point}", pos=numbers(place))
+    for body in pose.tree.children(FRAME):
+        if isinstance(pose, SpherePose):
+            add_turning_body(pose, world, body)
+        else:
+            add_body(pose, world, body, (0.0, 0.0))
+    if isinstance(pose, SpherePose):
+        add_turning_constraints(pose, root)
+    else:
+        add_constraints(pose, root)
 
 
 # The model as XML: bodies below each other, constraints of the loops and gears, actuators of the drives.
@@ -204,7 +222,7 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
     Parameters
     ----------
     mechanism : Mechanism
-        In the plane.
+        In the plane or on the sphere, whose centre is that of the world.
     motion : Dataset
         Its motion, whose first sample is the initial position.
     free : bool
@@ -222,24 +240,31 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset, *, free: bool = Fals
     Raises
     ------
     NotComputedYet
-        Spherical linkages, and bodies too light for MuJoCo.
+        Bodies too light for MuJoCo; on the sphere moving links that are a ring and a point mass, and gears whose turns
+        are no sums of joints.
     """
-    if mechanism.space == "sphere":
-        raise NotComputedYet(
-            "space", _("models of MuJoCo are made of planar linkages"), _("choose a planar linkage")
-        )
-    pose = Pose(mechanism, motion, LIGHT if free else NOMINAL, rolls=True, free=free)
+    pose, loads = _model_of(mechanism, motion, free)
     if free and mechanism.simulation is not None and mechanism.simulation.duration is not None:
         pose.step = min(pose.step, mechanism.simulation.duration / FREE_STEPS)
     if min(pose.least, pose.nominal_inertia) < LIGHTEST:
         what = _("MuJoCo has no bodies with a mass or moment of inertia below {least} kg or kg·m²")
         raise NotComputedYet("links", what.format(least=LIGHTEST), _("export it enlarged, or in other units"))
-    return _document(pose, free, _starting_pace(mechanism) if free else 1.0)
+    return _document(pose, loads, free, _starting_pace(mechanism) if free else 1.0)
 
 
-def omitted_loads(mechanism: Mechanism, motion: xarray.Dataset) -> tuple[str, ...]:
-    """Labels of the loads that a model of MuJoCo does not hold: formulas, tables, diagrams, dry friction, weights."""
-    return model_loads(Pose(mechanism, motion)).omitted
+def omitted_loads(mechanism: Mechanism, motion: xarray.Dataset) -> Mapping[str, str]:
+    """Labels of the loads that a model of MuJoCo does not hold, and why: formulas, tables, dry friction and others."""
+    return _model_of(mechanism, motion, free=False)[1].omitted
+
+
+def _model_of(mechanism: Mechanism, motion: xarray.Dataset, free: bool) -> tuple[ModelPose, ModelLoads]:
+    """A linkage at its initial position, and the loads that its model holds."""
+    nominal = LIGHT if free else NOMINAL
+    if mechanism.space == "sphere":
+        turned = SpherePose(mechanism, motion, nominal)
+        return turned, turning_loads(turned, motion)
+    pose = Pose(mechanism, motion, nominal, rolls=True, free=free)
+    return pose, model_loads(pose)
 
 
 def _starting_pace(mechanism: Mechanism) -> float:
@@ -249,12 +274,12 @@ def _starting_pace(mechanism: Mechanism) -> float:
     return 0.0 if not speed or not drive.speed else speed / abs(drive.speed)
 
 
-def _document(pose: Pose, free: bool, pace: float) -> str:
+def _document(pose: ModelPose, loads: ModelLoads, free: bool, pace: float) -> str:
     """The whole document; `pace`: how many times as fast as the drives' own speeds all moves initially."""
     root = ET.Element("mujoco", model=pose.mechanism.title or "linkage")
     ET.SubElement(root, "compiler", angle="radian", autolimits="true")
-    gravity = pose.mechanism.gravity or (0.0, 0.0)
-    ET.SubElement(root, "option", gravity=numbers((*gravity, 0.0)), timestep=number(pose.step),
+    gravity = (*(pose.mechanism.gravity or (0.0, 0.0)), 0.0)[:3]
+    ET.SubElement(root, "option", gravity=numbers(gravity), timestep=number(pose.step),
                   integrator="RK4" if free else "implicitfast", tolerance="1e-12", iterations="200")  # fmt: skip
     solref = f"{number(3 * pose.step)} 1"
     defaults = ET.SubElement(root, "default")
@@ -262,14 +287,9 @@ def _document(pose: Pose, free: bool, pace: float) -> str:
     ET.SubElement(defaults, "geom", contype="0", conaffinity="0", mass="0", rgba="0.3 0.45 0.6 1")
     ET.SubElement(defaults, "site", size=number(1.5 * THIN * pose.size))
     world = ET.SubElement(root, "worldbody")
-    for point in pose.mechanism.frame.points:
-        ET.SubElement(world, "site", name=f"{FRAME}.{point}", pos=numbers((*pose.places[point], 0.0)))
-    for body in pose.tree.children(FRAME):
-        add_body(pose, world, body, (0.0, 0.0))
-    add_constraints(pose, root)
-    loads = model_loads(pose)
+    _add_bodies(pose, root, world)
     if loads.tendons:
-        add_tendons(loads, _tendons(root))
+        add_tendons(loads, tendons_of(root))
     weighed = {weight.link for weight in loads.weights if weight.force is not None}
     for element in world.iter("body"):
         inertial = element.find("inertial")

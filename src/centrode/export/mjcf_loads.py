@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, assert_never
+from functools import partial
+from typing import TypeAlias, assert_never
 from xml.etree import ElementTree as ET
 
 from centrode.export.body_trees import Pose, number, numbers, turn_vector
+from centrode.locale import _
 from centrode.model.loads import (
     AnyLoad,
     BearingFriction,
@@ -27,9 +29,6 @@ from centrode.model.loads import (
     numbered_names,
 )
 from centrode.model.mechanism import FRAME, Mechanism
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 WORLD_SITE = "axes of the frame"
 """The site in whose axes constant forces act."""
@@ -63,14 +62,17 @@ class OwnWeight:
     force: ActuatorLoad | None
 
 
+HeldLoad: TypeAlias = TendonLoad | ActuatorLoad | OwnWeight
+
+
 @dataclass(frozen=True)
 class ModelLoads:
-    """Loads of a model, and the labels of those that it does not hold."""
+    """Loads of a model, and the labels of those that it does not hold, with why."""
 
     tendons: tuple[TendonLoad, ...]
     actuators: tuple[ActuatorLoad, ...]
     weights: tuple[OwnWeight, ...]
-    omitted: tuple[str, ...]
+    omitted: Mapping[str, str]
 
 
 def labelled_loads(mechanism: Mechanism) -> Iterator[tuple[str, AnyLoad]]:
@@ -81,7 +83,12 @@ def labelled_loads(mechanism: Mechanism) -> Iterator[tuple[str, AnyLoad]]:
 
 def model_loads(pose: Pose) -> ModelLoads:
     """The loads of a description as a model of MuJoCo holds them."""
-    found = {label: _model_load(pose, label, load) for label, load in labelled_loads(pose.mechanism)}
+    return held_loads(pose.mechanism, partial(_model_load, pose))
+
+
+def held_loads(mechanism: Mechanism, held: Callable[[str, AnyLoad], HeldLoad | None]) -> ModelLoads:
+    """What a function makes of each load by its name in the model: of those that it leaves out, the labels."""
+    found = {label: held(f"load {label}", load) for label, load in labelled_loads(mechanism)}
     return ModelLoads(
         tuple(x for x in found.values() if isinstance(x, TendonLoad)),
         tuple(
@@ -91,12 +98,33 @@ def model_loads(pose: Pose) -> ModelLoads:
             and isinstance(force, ActuatorLoad)
         ),
         tuple(x for x in found.values() if isinstance(x, OwnWeight)),
-        tuple(label for label, x in found.items() if x is None),
+        {label: reason_left_out(load) for label, load in labelled_loads(mechanism) if found[label] is None},
     )
 
 
-def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorLoad | OwnWeight | None:
-    name = f"load {label}"
+def reason_left_out(load: AnyLoad) -> str:
+    """Why a model of MuJoCo does not hold a load: it has numbers, springs and dampers, and no functions."""
+    given = {name: value for name, value in load if value is not None}
+    friction = isinstance(load, HingeFriction | GuideFriction | BearingFriction | SliderFriction)
+    amounts = [x for name in ("value", "vector") for x in _all_of(given.get(name))]
+    if "table" in given:
+        return _("a table")
+    if any(isinstance(amount, str) for amount in amounts):
+        return _("a formula")
+    if friction:
+        return _("dry or quadratic friction")
+    if given.get("while_moving"):
+        return _("acts in one sense of motion alone")
+    if isinstance(load, LinkWeight):
+        return _("the weight of a link without a mass")
+    return _("no joints of the model give its coordinate")
+
+
+def _all_of(value: object) -> Sequence[object]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _model_load(pose: Pose, name: str, load: AnyLoad) -> HeldLoad | None:
     match load:
         case PointSpring(points=points, stiffness=stiffness, free_length=free):
             properties = {"stiffness": number(stiffness), "springlength": number(free or 0.0)}
@@ -106,7 +134,7 @@ def _model_load(pose: Pose, label: str, load: AnyLoad) -> TendonLoad | ActuatorL
         case HingeSpring(link=link, relative_to=base, stiffness=stiffness, free_angle=free):
             # the coordinates of joints count from the initial position
             rest = (free or 0.0) - (pose.angles[link] - pose.angles[base])
-            properties = {"stiffness": number(stiffness), "springlength": _resting_length(rest)}
+            properties = {"stiffness": number(stiffness), "springlength": resting_length(rest)}
             return TendonLoad(name, (), _joint_turns(pose, link, base), properties)
         case HingeDamper(link=link, relative_to=base, damping=damping):
             return TendonLoad(name, (), _joint_turns(pose, link, base), {"damping": number(damping)})
@@ -172,7 +200,7 @@ def _joint_turns(pose: Pose, link: str, base: str) -> dict[str, float]:
     return pose.turns({link: 1.0, base: -1.0})
 
 
-def _resting_length(length: float) -> str:
+def resting_length(length: float) -> str:
     """A resting length as MuJoCo reads it: -1 alone has a meaning of its own there."""
     return number(length if length != -1.0 else -1.0 - 1e-15)
 
@@ -187,3 +215,16 @@ def add_tendons(loads: ModelLoads, tendons: ET.Element) -> None:
             ET.SubElement(tendon, "site", site=site)
         for joint, factor in load.joints.items():
             ET.SubElement(tendon, "joint", joint=joint, coef=number(factor))
+
+
+def tendons_of(root: ET.Element) -> ET.Element:
+    """Where the tendons of a model stand."""
+    found = root.find("tendon")
+    return ET.SubElement(root, "tendon") if found is None else found
+
+
+def fixed_tendon(root: ET.Element, name: str, joints: Mapping[str, float]) -> None:
+    """A tendon whose length is a sum of coordinates."""
+    tendon = ET.SubElement(tendons_of(root), "fixed", name=name)
+    for joint, factor in joints.items():
+        ET.SubElement(tendon, "joint", joint=joint, coef=number(factor))
