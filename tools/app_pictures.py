@@ -161,7 +161,7 @@ def main() -> None:
             settle(window)
             scene(window)
             shown = Image.open(io.BytesIO(window.screenshot())).convert("RGB")
-            shown.quantize(256, dither=Image.Dither.NONE).save(
+            shown.quantize(256, kmeans=3, dither=Image.Dither.NONE).save(
                 FOLDER / f"{name}.png", format="png", optimize=True
             )
             window.close()

@@ -43,9 +43,7 @@ def door_first_impact() -> tuple[float, float]:
     away = START - rest
 
     def angle(t: float) -> float:
-        return rest + away * math.exp(-decay * t) * (
-            math.cos(turn * t) + decay / turn * math.sin(turn * t)
-        )
+        return rest + away * math.exp(-decay * t) * (math.cos(turn * t) + decay / turn * math.sin(turn * t))
 
     low, high = 1.0, 2.0
     for _halving in range(60):
@@ -60,7 +58,7 @@ def number(cell: str) -> float:
 
 
 def test_events_of_a_door_are_those_of_its_closed_form(ask: Callable[..., Any]) -> None:
-    header, arrays = played(ask, example_text("door-closer"), "simulate")
+    header, _arrays = played(ask, example_text("door-closer"), "simulate")
     (block,) = motion_blocks(header)
     time, speed = door_first_impact()
     first = block["marks"][0]
