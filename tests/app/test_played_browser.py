@@ -1,4 +1,4 @@
-"""Simulations and modes on the canvas of the workbench: the slider with its events, the list, by hand and by keyboard."""
+"""Simulations and modes on the canvas of the workbench: the slider, its events and their list, by hand and by keys."""
 
 from __future__ import annotations
 
