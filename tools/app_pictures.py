@@ -1,6 +1,6 @@
-"""Make the pictures of the workbench in a browser: docs/images/app.png, app-drawing.png, app-text.png.
+"""Make the pictures of the workbench in a browser: docs/images/app.png and those whose names begin with app-.
 
-python -m tools.app_pictures
+python -m tools.app_pictures [NAME...]
 
 It needs a Chromium and playwright, as the tests of pages do.
 """
@@ -28,6 +28,7 @@ SIZES: Mapping[str, tuple[int, int]] = {
     "app": (1600, 900),
     "app-drawing": (1180, 720),
     "app-text": (1600, 900),
+    "app-events": (1600, 900),
 }
 PATIENCE = 120_000
 """Milliseconds in which the server has to answer."""
@@ -126,7 +127,22 @@ def text(window: Any) -> None:
     settle(window)
 
 
-SCENES: Mapping[str, Callable[[Any], None]] = {"app": press, "app-drawing": drawing, "app-text": text}
+def events(window: Any) -> None:
+    """A simulated catapult at the first impact of its arm."""
+    begin(window, "catapult")
+    window.click("#tab-simulate")
+    settle(window)
+    window.locator(".event-list button", has_text="0.4475").click()
+    window.evaluate("document.activeElement.blur()")
+    settle(window)
+
+
+SCENES: Mapping[str, Callable[[Any], None]] = {
+    "app": press,
+    "app-drawing": drawing,
+    "app-text": text,
+    "app-events": events,
+}
 
 
 def main() -> None:
@@ -134,7 +150,8 @@ def main() -> None:
     program = next(filter(None, map(shutil.which, BROWSERS)))
     with workbench() as address, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for name, scene in SCENES.items():
+        chosen = sys.argv[1:] or SCENES
+        for name, scene in ((name, SCENES[name]) for name in chosen):
             wide, high = SIZES[name]
             scheme: Any = "dark" if name == "app-text" else "light"
             window = browser.new_page(viewport={"width": wide, "height": high}, color_scheme=scheme)
@@ -144,7 +161,7 @@ def main() -> None:
             settle(window)
             scene(window)
             shown = Image.open(io.BytesIO(window.screenshot())).convert("RGB")
-            shown.quantize(256, dither=Image.Dither.NONE).save(
+            shown.quantize(256, kmeans=3, dither=Image.Dither.NONE).save(
                 FOLDER / f"{name}.png", format="png", optimize=True
             )
             window.close()

@@ -19,6 +19,9 @@ WIDTHS = (400, 1000, 1920)
 OTHERS = {
     "five-bar-two-drives": ("region",),
     "five-bar-pendulum": ("simulate",),
+    "door-closer": ("simulate",),
+    "vibrating-screen": ("modes",),
+    "spherical-crank-rocker-rigid": ("simulate", "modes"),
     "cam-from-curvature": ("roller-path", "path-routes"),
     "walking-wheel-four-legs": ("cam", "cam-profile", "walking-wheel", "cam-contact", "cam-choice"),
 }

@@ -686,24 +686,6 @@ def test_tolerances_are_a_panel_with_bars_and_bands(running: Any, server: Served
         assert one.messages == []
 
 
-def test_modes_swing_in_their_panel(running: Any, server: Served) -> None:
-    """Each mode is a drawing whose lines move while one looks, and a picture that stays."""
-    with bench(running, server.address, wide=1600) as one:
-        one.template("five-bar-pendulum")
-        one.motion()
-        one.page.locator('[role="tab"]', has_text="Natural oscillations").click()
-        one.until(lambda: one.page.locator("#panel .swing svg").count() == 2)
-        said = one.page.inner_text("#panel")
-        assert "Mode 1: 0.789134 Hz, without damping" in said
-        line = one.page.locator("#panel .swing path").first
-        before = line.get_attribute("d")
-        one.until(lambda: line.get_attribute("d") != before)
-        # a link of two points is a line between them, in the frame of the picture
-        assert before is not None and before.startswith("M") and before.count("L") == 1
-        one.page.locator('[role="tab"]', has_text="Equilibria").wait_for()
-        assert one.messages == []
-
-
 def test_the_profile_follows_the_segments_of_a_cam(running: Any, server: Served) -> None:
     """The greatest lift that the curve shows is the one that was written; the outline is another one."""
     with bench(running, server.address) as one:

@@ -43,6 +43,18 @@ def test_what_sticks_and_what_is_closed_is_shaded(run):
     assert abs((s**3 / 6 + s**2 / 2) / 2 - 5.0) < 1e-9
 
 
+def test_a_motion_at_its_events_stands_where_they_happen(mechanism, run):
+    """The block breaks loose at its start and touches its stop; instants asked for stay."""
+    also = ct.simulate(mechanism, at=[0.0, 3.0], at_events=True)
+    times = also["time"].values
+    assert times.tolist() == sorted({0.0, 3.0, *run["occasion_time"].values.tolist()})
+    place = also["position"].sel(point="P", axis="x").values
+    assert abs(place[times == 2.0]).max() < 1e-12
+    assert abs(place[-1] - 5.0) < 1e-12
+    # the motion goes on behind an event: the stop holds it
+    assert also["velocity"].sel(point="P", axis="x").values[-1] == 0.0
+
+
 def test_the_table_and_the_marks_have_every_event(run):
     table = event_table(run)
     assert len(table.columns[0].values) == run.sizes["occasion"] == len(event_marks(run))
@@ -50,6 +62,8 @@ def test_the_table_and_the_marks_have_every_event(run):
 
 def test_a_report_marks_events_on_its_slider(mechanism, run):
     page = html_page(ct.report(mechanism, name="block")).decode()
-    ticks = re.search(r'<svg class="ticks".*?</svg>', page, re.S)
+    ticks = re.search(r'<span class="ticks".*?</span></span>', page, re.S)
     assert ticks is not None
-    assert ticks.group().count("<rect") == run.sizes["occasion"]
+    # the impact and the rest that it ends in are at one instant, but have signs of their own
+    assert ticks.group().count('class="tick ') == run.sizes["occasion"]
+    assert ticks.group().count('class="held"') == len(held_stretches(run))

@@ -18,7 +18,8 @@ from centrode.app.exports import export_list, exported_file
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import frame_bytes
 from centrode.app.gear_bench import gear_answer
-from centrode.app.move_drags import motion_answer, place_on_way, way_of
+from centrode.app.motion_frames import motion_answer
+from centrode.app.move_drags import place_on_way, way_of
 from centrode.app.operations import apply_operations
 from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.patches import Patch
@@ -309,10 +310,11 @@ class Workbench:
         return {"text": read.text, "digest": self._keep(read.text), "told": told}
 
     def panel(self, message: Message) -> Answer:
-        """What a topic has to say about the description."""
-        return panel_of(
+        """What a topic has to say about the description; with the motions that it has found as a frame."""
+        panel, arrays = panel_of(
             self.document(message), message.get("topic"), message.get("options"), message.get("samples")
         )
+        return frame_bytes({"id": message.get("id", 0), **panel}, arrays) if arrays else panel
 
     def complete(self, message: Message) -> Answer:
         """What may stand at a place of the text."""

@@ -1,4 +1,4 @@
-"""A mechanism on the way: its motion for a player, and the drive's value that brings a dragged point to the cursor."""
+"""A mechanism on its way: the drive's value that brings a dragged point to the cursor."""
 
 from __future__ import annotations
 
@@ -6,29 +6,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from centrode.app.documents import Document
 from centrode.app.sketch import SketchParts, Vector
-from centrode.errors import CentrodeError, InputError, Status
-from centrode.kinematics.motion import motion
+from centrode.errors import InputError, Status
 from centrode.kinematics.path import even_grid
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.solve import SEARCH, TURNS, fit_for, requested_grid
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
-from centrode.model.settings import shown_as
-from centrode.scenes.driving_cams import driving_cams
 
 Array = npt.NDArray[np.float64]
 
-MOST_SAMPLES = 1441
-"""Samples of one motion for the page: a quarter of a degree of a turn."""
 TABLE = 721
 """Places of the way that are known before a drag."""
 REACH = 0.12
@@ -203,87 +195,3 @@ def _refine_parameter(way: DragWay, point: str, to: Array, node: int) -> float:
     low, high = float(np.min(way.places)), float(np.max(way.places))
     found = float(way.places[node]) + shift
     return found if way.closes else min(max(found, low), high)
-
-
-# The motion for a player.
-
-STATUS_WORDS = tuple(Status)[:5]
-
-
-def motion_answer(mechanism: Mechanism, samples: int | None) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Header and arrays of the motion of a mechanism over its range."""
-    count = min(max(samples or mechanism.study.samples or 361, 2), MOST_SAMPLES)
-    data = motion(mechanism, count)
-    parameter = mechanism.motion_parameter
-    variable = parameter.variable
-    factor, unit = shown_as(variable.unit, mechanism.display)
-    instants = np.asarray(parameter.instants(data), dtype=float)
-    kinds = {"rad": "angle", "m": "length", "s": "time"}
-    header = {
-        "points": data["point"].to_numpy().tolist(),
-        "links": data["link"].to_numpy().tolist(),
-        "samples": count,
-        "kind": kinds.get(variable.unit, "time"),
-        "unit": unit,
-        "factor": factor,
-        "status_words": {str(int(status)): _(status.word) for status in STATUS_WORDS},
-        "reached": {str(int(status)): status in (Status.OK, Status.SINGULAR) for status in STATUS_WORDS},
-        "events": [
-            {
-                "drive": float(at),
-                "kind": ("limit", "change point")[int(kind)],
-                "text": _(("limit", "change point")[int(kind)]),
-                "group": str(group),
-            }
-            for at, kind, group in zip(
-                data["event_value"].to_numpy(),
-                data["event_kind"].to_numpy(),
-                data["event_group"].to_numpy(),
-                strict=True,
-            )
-        ],
-    }
-    arrays = {
-        "drive": instants,
-        "time": data["time"].to_numpy(),
-        "points": data["position"].to_numpy(),
-        "velocities": data["velocity"].to_numpy(),
-        "accelerations": data["acceleration"].to_numpy(),
-        "status": data["status"].to_numpy(),
-    }
-    for name, key in (
-        ("angles", "angle"),
-        ("angular_velocities", "angular_velocity"),
-        ("angular_accelerations", "angular_acceleration"),
-    ):
-        if key in data:
-            arrays[name] = data[key].to_numpy()
-    header["cams"] = _add_cams(mechanism, data, arrays)
-    return header, arrays
-
-
-def _add_cams(mechanism: Mechanism, data: xr.Dataset, arrays: dict[str, Any]) -> list[dict[str, Any]]:
-    """Cams that drive, as they stand at the first sample, and what follows each of them at every sample."""
-    try:
-        cams = driving_cams(mechanism, data, 1.0)
-    except CentrodeError:
-        return []
-    found = []
-    for k, cam in enumerate(cams):
-        samples = range(len(cam.angles))
-        rollers = [cam.roller(sample) for sample in samples]
-        lines = [np.array(cam.lines(sample)).reshape(-1) for sample in samples]
-        turned = cam.angles - cam.angles[0]
-        arrays[f"cam_turns_{k}"] = turned if cam.forward else -turned
-        arrays[f"cam_lines_{k}"] = np.array(lines)
-        if rollers[0] is not None:
-            arrays[f"cam_rollers_{k}"] = np.array([roller[0] for roller in rollers if roller is not None])
-        found.append(
-            {
-                "centre": cam.hub.tolist(),
-                "outline": cam.outline(0).tolist(),
-                "mark": cam.mark(0).tolist(),
-                "roller": None if rollers[0] is None else rollers[0][1],
-            }
-        )
-    return found

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from centrode import render
 from centrode.app.documents import Document
+from centrode.app.motion_frames import MOST_FRAMES, player_frames
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import default_instants
 from centrode.locale import _, mark
@@ -139,13 +140,16 @@ def topic_named(name: object) -> Topic:
     raise InputError("", _("the server does not know this topic"))
 
 
-def panel_of(document: Document, name: object, options: object, samples: object) -> dict[str, Any]:
-    """The panel of a topic: its blocks, or why there are none."""
+def panel_of(
+    document: Document, name: object, options: object, samples: object
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The panel of a topic, its blocks or why there are none, and the arrays of the motions that they play."""
     topic = topic_named(name)
     try:
-        sheet, description = topic_sheet(document, topic, options, samples)
+        sheet, description = topic_sheet(document, topic, options, samples, plays=True)
         shows = topic.panel is None or topic.panel.pictures
         blocks = render.panel_blocks(sheet, description.display, mathematics_of(description), pictures=shows)
+        motions, arrays = player_frames(render.panel_motions(sheet))
     except CentrodeError as failure:
         where = f"{failure.where}: " if failure.where else ""
         return {
@@ -153,12 +157,19 @@ def panel_of(document: Document, name: object, options: object, samples: object)
             "title": _(topic.title),
             "missing": where + failure.what,
             "repair": failure.repair,
-        }
-    return {"topic": topic.name, "title": _(topic.title), "blocks": blocks}
+        }, {}
+    return {"topic": topic.name, "title": _(topic.title), "blocks": blocks, "motions": motions}, arrays
 
 
-def topic_sheet(document: Document, topic: Topic, options: object, samples: object) -> tuple[Any, Described]:
-    """The sheet of a topic of a description, and this; raises CentrodeError where there is none."""
+def topic_sheet(
+    document: Document, topic: Topic, options: object, samples: object, *, plays: bool = False
+) -> tuple[Any, Described]:
+    """The sheet of a topic of a description, and this; raises CentrodeError where there is none.
+
+    Parameters
+    ----------
+    plays : whether the page plays the motions that the topic finds: places of everything, no more than it can show
+    """
     description: Described = document.cam if document.cam is not None else document.require_mechanism()
     if isinstance(description, Mechanism) and document.free is None:
         document.require_prepared()
@@ -166,6 +177,8 @@ def topic_sheet(document: Document, topic: Topic, options: object, samples: obje
     if reason is not True:
         raise InputError("", str(reason))
     arguments = _arguments(topic, description, options, samples)
+    if plays and topic.panel is not None and topic.panel.played and isinstance(description, Mechanism):
+        arguments |= {**topic.panel.played, **_bounded_samples(description)}
     command = topic.command
     if command is not None and command.needs is not None:
         # of a cam it is the description alone that may lack something
@@ -192,6 +205,12 @@ def _arguments(topic: Topic, description: Described, options: object, samples: o
         if key and not arguments.get(key):
             arguments[key] = list(default_instants(description))[:INSTANTS]
     return arguments
+
+
+def _bounded_samples(mechanism: Mechanism) -> dict[str, int]:
+    """Samples of a simulation where the description asks for more than a page plays."""
+    own = mechanism.simulation
+    return {} if own is None or own.at or own.samples <= MOST_FRAMES else {"samples": MOST_FRAMES}
 
 
 def _instants_key(command: Command) -> str:

@@ -191,6 +191,10 @@ WORDS: Mapping[str, str] = {
     "more": mark("More about the structure"),
     "formula": mark("Formula"),
     "options": mark("Options"),
+    "events_first": mark("the first {shown} of {count}"),
+    "event_go": mark("Go to this event"),
+    "played_motion": mark("Motion that is played"),
+    "keys_events": mark("On the slider: the event before, the next one"),
 }
 """Key of the page -> sentence in English."""
 

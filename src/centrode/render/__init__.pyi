@@ -16,6 +16,7 @@ from .netcdf import read_dataset as read_dataset
 from .netcdf import write_dataset as write_dataset
 from .outlines import writes_dxf as writes_dxf
 from .panel_blocks import panel_blocks as panel_blocks
+from .panel_blocks import panel_motions as panel_motions
 from .panel_blocks import screen_text as screen_text
 from .plain_table import aligned_text as aligned_text
 from .terminal import fact_rows as fact_rows

@@ -28,11 +28,12 @@ from centrode.sheets.sheet import (
     SymbolList,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Number, Text
+from centrode.sheets.texts import NOTHING, Expression, Number, Sentence, Text
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.pictures import Picture
+    from centrode.sheets.players import MarkedEvent
     from centrode.sheets.plots import AxisLabel
     from centrode.sheets.sheet import Column, Fact, PointArrows, Sheet
 
@@ -44,6 +45,10 @@ ROWS = 400
 """Rows of a table that a page shows; its files have all of them."""
 PICTURES = 40
 """Pictures of one panel."""
+MARKS = 2000
+"""Events that a slider marks: more than it has places."""
+TIME_DIGITS = 12
+"""Significant digits of the instants of events, which may lie close to each other."""
 DIGITS = 7
 """Significant digits of numbers on their way to a page, which shows fewer."""
 
@@ -79,6 +84,14 @@ def panel_blocks(
     return blocks
 
 
+def panel_motions(sheet: Sheet) -> tuple[MotionPlayer, ...]:
+    """The motions of a sheet by the numbers that its blocks of a page give them."""
+    blocks = (
+        one for block in sheet.printed for one in (block.blocks if isinstance(block, Section) else (block,))
+    )
+    return tuple(block for block in blocks if isinstance(block, MotionPlayer))
+
+
 def screen_text(text: Text, display: Display) -> str:
     """A text as a page shows it."""
     return ScreenSpelling(display).text(text)
@@ -91,6 +104,7 @@ class _BlockWriter:
         self.display, self.mathematics = display, mathematics
         self.spelling = ScreenSpelling(display)
         self.formulas: list[tuple[JSON, Formula]] = []
+        self.motions = 0
 
     def set_formulas(self) -> None:
         """Add the MathML of all formulas that were written."""
@@ -137,29 +151,55 @@ class _BlockWriter:
             case SymbolList(symbols):
                 lines = symbol_lines([symbol_texts(one, self.spelling) for one in symbols])
                 yield {"kind": "formula", "text": "\n".join(lines)}
-            case MotionPlayer() if block.mechanism.space != "sphere":
-                yield self.swing(block)
-            case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
+            case MotionPlayer():
+                yield self.motion(block)
+            case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer():
                 return
             case _:
                 assert_never(block)
 
-    def swing(self, player: MotionPlayer) -> JSON:
-        """A motion that begins again where it ends, as places of points: a page moves its lines itself."""
-        mechanism, motion = player.mechanism, player.motion
-        names = [str(name) for name in motion["point"].values]
-        times, places = motion["time"].values, motion["position"].values
+    def motion(self, player: MotionPlayer) -> JSON:
+        """A motion that the page plays, by its number among those of the sheet, with what its slider marks."""
+        self.motions += 1
+        text = self.spelling.text
+        marks = [
+            {"at": _number(one.time, TIME_DIGITS), "label": text(one.name), "sign": one.sign}
+            for one in player.marks[:MARKS]
+        ]
         return {
-            "kind": "swing",
-            "title": self.spelling.text(player.title),
-            "period": _number(float(times[-1] - times[0])),
-            "points": names,
-            "fixed": [name in mechanism.frame.points for name in names],
-            "links": [
-                [names.index(point) for point in link.coordinates if point in names]
-                for link in mechanism.links.values()
+            "kind": "motion",
+            "number": self.motions - 1,
+            "title": text(player.title),
+            "loops": player.loops,
+            "marks": marks,
+            "held": [
+                {
+                    "from": _number(one.begin, TIME_DIGITS),
+                    "to": _number(one.end, TIME_DIGITS),
+                    "label": text(one.name),
+                }
+                for one in player.held[:MARKS]
             ],
-            "places": [_numbers(sample) for sample in places],
+            "events": self.events(player.marks) if player.marks else None,
+        }
+
+    def events(self, marks: Sequence[MarkedEvent]) -> JSON:
+        """The first events in full: a row for each mark."""
+        text = self.spelling.text
+        parts = {
+            "time": (Expression("t"), [Number(one.time, "s") for one in marks[:ROWS]]),
+            "event": (Sentence("event"), [one.kind for one in marks[:ROWS]]),
+            "part": (Sentence("part of the event"), [one.part for one in marks[:ROWS]]),
+            "impulse": (Sentence("impulse"), [one.impulse for one in marks[:ROWS]]),
+            "loss": (Sentence("lost energy"), [one.loss for one in marks[:ROWS]]),
+        }
+        columns = [(head, list(map(text, cells))) for head, cells in parts.values()]
+        kept = [(text(head), cells) for head, cells in columns if any(cells)]
+        return {
+            "title": text(Sentence("Events")),
+            "columns": [head for head, _cells in kept],
+            "rows": [list(row) for row in zip(*(cells for _head, cells in kept), strict=True)],
+            "count": len(marks),
         }
 
     def formula(self, block: Formula) -> Iterator[JSON]:
@@ -253,6 +293,7 @@ class _BlockWriter:
                     {"label": self.spelling.text(place_name), "at": _number(place * across)}
                     for place_name, place in plot.places
                 ],
+                "shaded": [[_number(end * across) for end in ends] for ends in plot.shaded],
             }
 
     def _diagram(self, name: str, diagram: CurveDiagram) -> JSON:
@@ -297,9 +338,9 @@ class _BlockWriter:
         }
 
 
-def _number(value: float) -> float | None:
+def _number(value: float, digits: int = DIGITS) -> float | None:
     """A number of a few digits; None where there is none."""
-    return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
+    return float(f"{value:.{digits}g}") if np.isfinite(value) else None
 
 
 def _numbers(values: Any) -> list[float | None]:

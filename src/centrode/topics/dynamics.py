@@ -151,7 +151,9 @@ SIMULATION = Topic(
         instants=False,
     ),
     panel=Panel(
-        needs=mark("the description has no [simulation] with a motor or a driving moment"), free=True
+        needs=mark("the description has no [simulation] with a motor or a driving moment"),
+        played={"motion": True, "at_events": True},
+        free=True,
     ),
 )
 

@@ -228,6 +228,7 @@ class Panel:
     title : marked for the catalogues; that of the first chapter if empty
     needs : what a description lacks that the topic does not concern, marked for the catalogues
     arguments : of the computation
+    played : further ones with which the motion that it finds can be played
     pictures : whether its pictures are shown
     free : whether it takes descriptions with drives that have no law too
     """
@@ -235,6 +236,7 @@ class Panel:
     title: str = ""
     needs: str = ""
     arguments: Mapping[str, Any] = field(default_factory=dict)
+    played: Mapping[str, Any] = field(default_factory=dict)
     pictures: bool = True
     free: bool = False
 

@@ -45,7 +45,9 @@ def sheet(results: ModesResults) -> Sheet:
         pictures=Deferred(dict(_pictures(results))),
         chapters={"modes": _chapter(results)},
         printed=tuple(
-            MotionPlayer(results.mechanism, results.motions[k], by_time=True, title=_title(results, k))
+            MotionPlayer(
+                results.mechanism, results.motions[k], by_time=True, title=_title(results, k), loops=True
+            )
             for k in range(min(len(results.motions), DRAWN))
         ),
     )
@@ -140,7 +142,7 @@ def _chapter(results: ModesResults) -> Chapter:
         Section(NOTHING, (Paragraph(text), equations, FactTable(tuple(_facts(found))), _table(found)))
     ]
     for k, (name, _make) in enumerate(_pictures(results)):
-        player = MotionPlayer(results.mechanism, results.motions[k], by_time=True)
+        player = MotionPlayer(results.mechanism, results.motions[k], by_time=True, loops=True)
         title = Sentence("Mode {number}", number=Number(k + 1, digits="d"))
         blocks.append(Section(title, (Illustration(name), player)))
     return Chapter(Sentence("Natural oscillations"), tuple(blocks))

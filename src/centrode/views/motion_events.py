@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import islice
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.sheets.players import EventSign, HeldStretch, MarkedEvent
 from centrode.sheets.sheet import Column, Fact, Table
-from centrode.sheets.texts import Expression, Joined, Name, Number, Sentence, Text
+from centrode.sheets.texts import NOTHING, Expression, Joined, Name, Number, Sentence, Text, Unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,11 +30,23 @@ KINDS = {
     "condition": Sentence("condition met"),
 }
 """What an event is called."""
+SIGNS: dict[str, EventSign] = {
+    "impact": "impact",
+    "comes_to_rest": "close",
+    "closes": "close",
+    "opens": "open",
+    "touches": "close",
+    "leaves": "open",
+    "lets_go": "open",
+    "sticks": "stick",
+    "slips": "slip",
+    "condition": "user",
+    "breaks_loose": "slip",
+    "standstill": "stick",
+}
+"""How a slider marks an event; the others have no sign of their own."""
 MARKED = 12
 """Events that figures mark one by one; more would hide what they mark."""
-
-TICKS = 200
-"""Events that a slider marks."""
 
 
 def kinds_of_events(run: xr.Dataset) -> list[str]:
@@ -96,6 +108,24 @@ def event_text(run: xr.Dataset, number: int) -> Text:
     return Sentence("{part} at {time}", part=Name(part), time=time)
 
 
+def _impulses(run: xr.Dataset) -> tuple[Column, ...]:
+    """Impulses in the unit of their parts: of forces in N s, of moments in N m s."""
+    values, parts = run["occasion_impulse"].values, parts_of_events(run)
+    units = tuple(
+        _unit_of_impulse(run, part) if np.isfinite(value) else ""
+        for part, value in zip(parts, values, strict=True)
+    )
+    known = sorted({*units} - {""})
+    if len(known) < 2:
+        return (Column("impulse", values, known[0] if known else "N s", Expression("S")),)
+    spelled = tuple(Unit(unit) if unit else NOTHING for unit in units)
+    filled = tuple(unit or known[0] for unit in units)
+    return (
+        Column("impulse", values, head=Expression("S"), units=filled),
+        Column("impulse_unit", spelled, head=Sentence("unit")),
+    )
+
+
 def event_table(run: xr.Dataset, caption: bool = False) -> Table:
     """Every event with its part, impulse and lost energy."""
     kinds = tuple(KINDS[kind] for kind in kinds_of_events(run))
@@ -105,7 +135,7 @@ def event_table(run: xr.Dataset, caption: bool = False) -> Table:
             Column("time", run["occasion_time"].values, "s", Expression("t")),
             Column("event", kinds, head=Sentence("event")),
             Column("part", parts, head=Sentence("part of the event")),
-            Column("impulse", run["occasion_impulse"].values, "N s", Expression("S")),
+            *_impulses(run),
             Column("loss", run["occasion_loss"].values, "J", Expression("Delta T")),
         ),
         Sentence("Events of the motion, with impulses and lost energies") if caption else Sentence("Events"),
@@ -114,37 +144,42 @@ def event_table(run: xr.Dataset, caption: bool = False) -> Table:
 
 def event_marks(run: xr.Dataset) -> tuple[tuple[Text, float], ...]:
     """Names and times of the events, where they are few enough to be marked."""
-    parts, times = parts_of_events(run), run["occasion_time"].values.tolist()
-    if not sum(map(bool, parts)) > 0 or len(times) > MARKED:
+    if not any(parts_of_events(run)) or run.sizes["occasion"] > MARKED:
         return ()
-    kinds = kinds_of_events(run)
-    return tuple(
-        (Joined((Name(part), KINDS[kind]), ": ") if part else KINDS[kind], float(time))
-        for part, kind, time in zip(parts, kinds, times, strict=True)
+    return tuple((event.name, event.time) for event in marked_events(run, KINDS))
+
+
+def marked_events(run: xr.Dataset, kinds: Mapping[str, Sentence]) -> tuple[MarkedEvent, ...]:
+    """Every event as a slider marks it; `kinds` name them by their words in the dataset."""
+    absent = np.full(run.sizes["occasion"], np.nan)
+    impulses, losses = (
+        run[name].values if name in run else absent for name in ("occasion_impulse", "occasion_loss")
     )
-
-
-def slider_marks(run: xr.Dataset) -> tuple[tuple[Text, float], ...]:
-    """Names and times of the events of stops, clamps, frictions and conditions, the first of many."""
+    columns = zip(
+        kinds_of_events(run),
+        parts_of_events(run),
+        run["occasion_time"].values.tolist(),
+        impulses.tolist(),
+        losses.tolist(),
+        strict=True,
+    )
     return tuple(
-        (Joined((Name(part), KINDS[kind]), ": "), float(time))
-        for part, kind, time in islice(
-            zip(
-                parts_of_events(run),
-                kinds_of_events(run),
-                run["occasion_time"].values.tolist(),
-                strict=True,
-            ),
-            TICKS,
+        MarkedEvent(
+            kinds[kind],
+            time,
+            SIGNS.get(kind, "other"),
+            Name(part) if part else NOTHING,
+            Number(impulse, _unit_of_impulse(run, part), ".4g") if np.isfinite(impulse) else NOTHING,
+            Number(loss, "J", ".4g") if np.isfinite(loss) else NOTHING,
         )
-        if part
+        for kind, part, time, impulse, loss in columns
     )
 
 
-def held_stretches(run: xr.Dataset) -> tuple[tuple[float, float], ...]:
-    """Stretches of time in which some friction sticks or some stop is closed, joined where they meet."""
+def held_parts(run: xr.Dataset) -> tuple[HeldStretch, ...]:
+    """Stretches of time in which a friction sticks, a stop is closed or a clamp holds, each by itself."""
     begun: dict[str, float] = {}
-    found: list[tuple[float, float]] = []
+    found: list[HeldStretch] = []
     last = float(run["time"].values[-1]) if run.sizes["sample"] else 0.0
     if "contact_mode" in run and run.sizes["sample"]:
         first = run["contact_mode"].values[0]
@@ -155,12 +190,17 @@ def held_stretches(run: xr.Dataset) -> tuple[tuple[float, float], ...]:
         if kind in ("sticks", "closes", "comes_to_rest"):
             begun.setdefault(part, float(time))
         elif kind in ("slips", "opens", "lets_go") and part in begun:
-            found.append((begun.pop(part), float(time)))
-    found += [(time, last) for time in begun.values()]
+            found.append(HeldStretch(Name(part), begun.pop(part), float(time)))
+    found += [HeldStretch(Name(part), time, last) for part, time in begun.items()]
+    return tuple(sorted(found, key=lambda one: (one.begin, one.end)))
+
+
+def held_stretches(run: xr.Dataset) -> tuple[tuple[float, float], ...]:
+    """Stretches of time in which some friction sticks or some stop is closed, joined where they meet."""
     joined: list[tuple[float, float]] = []
-    for low, high in sorted(found):
-        if joined and low <= joined[-1][1]:
-            joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
+    for one in held_parts(run):
+        if joined and one.begin <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(one.end, joined[-1][1]))
         else:
-            joined.append((low, high))
+            joined.append((one.begin, one.end))
     return tuple(joined)

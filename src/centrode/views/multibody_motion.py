@@ -61,8 +61,9 @@ from centrode.views.motion_events import (
     event_marks,
     event_table,
     event_text,
+    held_parts,
     held_stretches,
-    slider_marks,
+    marked_events,
 )
 from centrode.views.motion_plots import (
     deal_to_panels,
@@ -128,7 +129,17 @@ def multibody_sheet(results: SimulationResults) -> Sheet:
         datasets={"simulation": run},
         pictures=Deferred(dict(_pictures(results))),
         chapters={"simulation": _chapter(results)},
+        printed=_players(results),
     )
+
+
+def _players(results: SimulationResults) -> tuple[MotionPlayer, ...]:
+    """The motion itself, which a page plays, with its events marked."""
+    run = results.simulation
+    if run.sizes["sample"] < 2:
+        return ()
+    marks, held = marked_events(run, KINDS), held_parts(run)
+    return (MotionPlayer(results.mechanism, run, by_time=True, marks=marks, held=held),)
 
 
 def _events(run: xr.Dataset) -> dict[str, Table]:
@@ -462,14 +473,9 @@ def _chapter(results: SimulationResults) -> Chapter:
         )
         for name, picture in _pictures(results)
     )
-    player = (
-        (MotionPlayer(results.mechanism, run, by_time=True, marks=slider_marks(run)),)
-        if run.sizes["sample"] > 1
-        else ()
-    )
     sections = (
         Section(NOTHING, (Paragraph(text), equations, FactTable(tuple(_facts(results))), *_checks(results))),
-        Section(Sentence("Over time"), (*player, _course(run), *_events_of_chapter(run))),
+        Section(Sentence("Over time"), (*_players(results), _course(run), *_events_of_chapter(run))),
         Section(NOTHING, figures),
     )
     return Chapter(Sentence("Motion under loads"), sections)

@@ -11,6 +11,7 @@ import numpy as np
 
 from centrode.kinematics.hinge_angles import moving_hinges
 from centrode.quantities import QUANTITIES
+from centrode.sheets.players import MotionPlayer
 from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel, Plot
 from centrode.sheets.sheet import (
     Chapter,
@@ -50,6 +51,7 @@ from centrode.views.energy_balance import (
     occasion_facts,
     works_at_end,
 )
+from centrode.views.motion_events import marked_events
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
 
 if TYPE_CHECKING:
@@ -124,7 +126,16 @@ def reduced_sheet(results: SimulationResults) -> Sheet:
         datasets={"simulation": run},
         pictures=dict(_pictures(results)),
         chapters={"simulation": _chapter(results)},
+        printed=_players(results),
     )
+
+
+def _players(results: SimulationResults) -> tuple[MotionPlayer, ...]:
+    """The motion itself, which a page plays, where the places of the points are there."""
+    run = results.simulation
+    if "position" not in run or run.sizes["sample"] < 2:
+        return ()
+    return (MotionPlayer(results.mechanism, run, by_time=True, marks=marked_events(run, OCCASIONS)),)
 
 
 # Facts

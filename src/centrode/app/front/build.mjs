@@ -1,5 +1,5 @@
 // Bundles the page into the folder that the package serves; `--out DIR` elsewhere, which a test compares.
-import { copyFile, mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
@@ -26,7 +26,10 @@ const built = await esbuild.build({
   assetNames: "[name]",
   logLevel: "warning",
 });
-for (const name of ["index.html", "gears.html", "synthesis.html"]) await copyFile(join(here, name), join(out, name));
+// Each page is the same but for what it loads, and whether that makes its main part itself.
+const page = await readFile(join(here, "page.html"), "utf8");
+for (const [file, name, tag] of [["index", "app", "div"], ["gears", "gears", "main"], ["synthesis", "synthesis", "main"]])
+  await writeFile(join(out, `${file}.html`), page.replaceAll("{{name}}", name).replaceAll("{{tag}}", tag));
 
 // The licences of what is bundled go with it.
 const packages = [...new Set(Object.keys(built.metafile.inputs).flatMap((file) => /node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(file)?.[1] ?? []))].sort();

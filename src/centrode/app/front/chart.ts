@@ -19,6 +19,7 @@ export interface ChartData {
   bands?: { from: number; to: number }[]; // samples that are not reached
   marks?: { at: number; kind: string }[]; // samples of limits and change points
   places?: { at: number; label: string }[]; // values of the abscissa that have a name
+  shaded?: { from: number; to: number }[]; // stretches of the abscissa
 }
 
 const steps = (least: number, most: number, count: number, turns: boolean): number => {
@@ -49,6 +50,7 @@ export class Chart {
   private at = 0;
   private held = false;
   private rising = true;
+  private turnsBack = false;
   private watch: ResizeObserver;
 
   // `seek` takes the place under the pointer; without it the chart has no cursor.
@@ -89,11 +91,20 @@ export class Chart {
     this.draw();
   }
 
-  // Between samples of an abscissa that rises or falls.
+  // Between samples of an abscissa that rises or falls; of one that turns back, as in a phase portrait, the nearest.
   private sample(event: PointerEvent): number {
     const { data } = this;
     if (!data) return 0;
     const box = this.svg.getBoundingClientRect(), x = ((event.clientX - box.left) * this.wide) / box.width, values = data.x.values;
+    if (this.turnsBack) {
+      const y = ((event.clientY - box.top) * this.wide) / box.width, first = data.lines[0]!.values;
+      let best = 0, nearest = Infinity;
+      for (let k = 0; k < values.length; k += 1) {
+        const [across, up] = this.place(k), far = Math.hypot(across - x, up(first[k]!) - y);
+        if (far < nearest) [best, nearest] = [k, far];
+      }
+      return best;
+    }
     const share = Math.min(1, Math.max(0, (x - LEFT) / (this.wide - LEFT - RIGHT)));
     const [low, high] = this.range();
     const sought = low + share * (high - low), last = values.length - 1;
@@ -112,6 +123,7 @@ export class Chart {
     if (own.length) return [own.reduce((a, b) => Math.min(a, b)), own.reduce((a, b) => Math.max(a, b))];
     const values = this.data!.x.values, first = values[0] ?? 0, last = values[values.length - 1] ?? 1, all = Array.from(values).filter(Number.isFinite);
     this.rising = first <= last;
+    this.turnsBack = all.some((value, k) => k > 0 && (this.rising ? value < all[k - 1]! : value > all[k - 1]!));
     const least = all.reduce((a, b) => Math.min(a, b), first), most = all.reduce((a, b) => Math.max(a, b), last), slack = 1e-9 * (most - least);
     // what goes to and fro, as a drive over its turns
     if (least < Math.min(first, last) - slack || most > Math.max(first, last) + slack) return [least, most];
@@ -148,6 +160,9 @@ export class Chart {
     for (const band of data.bands ?? []) {
       const a = x(abscissa[band.from]!), b = x(abscissa[band.to]!);
       make("rect", { class: "band", x: Math.min(a, b), y: UPPER, width: Math.abs(b - a), height: TALL - UPPER - LOWER }, svg);
+    }
+    for (const { from: begin, to: end } of data.shaded ?? []) {
+      make("rect", { class: "held", x: Math.min(x(begin), x(end)), y: UPPER, width: Math.max(1, Math.abs(x(end) - x(begin))), height: TALL - UPPER - LOWER }, svg);
     }
     for (const mark of data.marks ?? []) {
       const at = x(between(abscissa, mark.at));

@@ -302,7 +302,7 @@ function PhotoWindow() {
 // --- others ------------------------------------------------------------------------------------------------------------
 const KEYS: [string, string][] = [
   ["D  G  E  M", "keys_modes"], ["←  ↑  →  ↓", "keys_arrows"], ["Enter", "keys_enter"], ["Space", "keys_space"], ["Tab", "keys_tab"], ["Esc", "keys_escape"],
-  ["Ctrl+←  ↑  →  ↓", "keys_pan"], ["Delete", "keys_delete"], ["Ctrl+Z, Ctrl+Y", "keys_undo"], ["Ctrl+D", "keys_duplicate"], ["Ctrl+S, Ctrl+O", "keys_files"], ["+  −  F", "keys_zoom"], ["P", "keys_play"], ["T", "keys_text"],
+  ["Ctrl+←  ↑  →  ↓", "keys_pan"], ["Delete", "keys_delete"], ["Ctrl+Z, Ctrl+Y", "keys_undo"], ["Ctrl+D", "keys_duplicate"], ["Ctrl+S, Ctrl+O", "keys_files"], ["+  −  F", "keys_zoom"], ["P", "keys_play"], ["PageDown  PageUp", "keys_events"], ["T", "keys_text"],
 ];
 function KeysWindow() {
   return (

@@ -1,11 +1,25 @@
 // A motion as the server sends it, and its numbers between the samples.
-import { type DrivingCam, type Frame, isFrame, type Place } from "./protocol";
+import { type DrivingCam, type EventSign, type Frame, isFrame, type MotionBlock, type Panel, type Place } from "./protocol";
 
 export interface MotionEvent {
   drive: number;
   kind: string;
   text: string;
 }
+
+// An event of a motion that a topic has found, or a stretch in which something holds, by samples of the motion.
+export interface EventMark {
+  at: number;
+  label: string;
+  sign: EventSign;
+}
+export interface Course {
+  title: string;
+  loops: boolean;
+  marks: EventMark[];
+  held: { from: number; to: number; label: string }[];
+}
+const SLOWEST = 20, FASTEST = 2; // seconds that a motion in time takes in the player, else its own
 
 export class Motion {
   readonly points: string[];
@@ -16,10 +30,11 @@ export class Motion {
   readonly status: Float32Array;
   readonly events: MotionEvent[];
   readonly limits: string[];
+  readonly course: Course | null; // of a motion that a topic has found
   private readonly pointIndex: Map<string, number>;
   private readonly linkIndex: Map<string, number>;
 
-  constructor(private readonly frame: Frame, readonly digest: string) {
+  constructor(private readonly frame: Frame, readonly digest: string, block: MotionBlock | null = null) {
     const { header, arrays } = frame;
     this.points = header.points;
     this.links = header.links;
@@ -32,6 +47,46 @@ export class Motion {
     this.limits = header.limits ?? [];
     this.pointIndex = new Map(this.points.map((name, k) => [name, k]));
     this.linkIndex = new Map(this.links.map((name, k) => [name, k]));
+    this.course = block && {
+      title: block.title ?? "",
+      loops: block.loops,
+      marks: block.marks.map((mark) => ({ ...mark, at: this.placeAt(mark.at) })),
+      held: block.held.map((one) => ({ ...one, from: this.placeAt(one.from), to: this.placeAt(one.to) })),
+    };
+  }
+
+  // Seconds that one way takes in the player at its usual speed: a motion in time its own, if one can wait for it.
+  get seconds(): number {
+    const own = Math.abs(this.drive[this.last]! - this.drive[0]!);
+    if (!this.course) return 6;
+    return this.course.loops ? Math.min(Math.max(own, 1.2), 4) : Math.min(Math.max(own, FASTEST), SLOWEST);
+  }
+  // Whether the player begins again where it ends.
+  get whole(): boolean {
+    return this.course ? this.course.loops : this.closed;
+  }
+
+  // Where between the samples an instant lies; they need not stand at even distances.
+  placeAt(time: number): number {
+    const sought = Math.fround(time);
+    let low = 0, high = this.last;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.drive[middle]! < sought) low = middle + 1;
+      else high = middle;
+    }
+    const before = this.drive[low - 1], after = this.drive[low]!;
+    if (before === undefined || after <= sought) return low;
+    return low - (after - sought) / (after - before);
+  }
+  // The place on a slider, from 0 to `last`: that of a course goes through time, any other one from sample to sample.
+  slideOf(at: number): number {
+    const way = this.drive[this.last]! - this.drive[0]!;
+    return this.course && way ? (this.last * (this.driveAt(at) - this.drive[0]!)) / way : at;
+  }
+  placeOf(slide: number): number {
+    const way = this.drive[this.last]! - this.drive[0]!;
+    return this.course && way ? this.placeAt(this.drive[0]! + (way * slide) / this.last) : slide;
   }
 
   get last(): number {
@@ -143,3 +198,14 @@ export class Motion {
 }
 
 export const motionOf = (answer: unknown, digest: string): Motion | null => (isFrame(answer) && answer.arrays.points ? new Motion(answer, digest) : null);
+
+// The motions of a panel by their numbers.
+export function coursesOf(panel: Panel, digest: string): Motion[] {
+  const { frame } = panel;
+  if (!frame) return [];
+  const blocks = panel.blocks.filter((block) => block.kind === "motion");
+  return (frame.header.motions as Record<string, unknown>[]).map((header, number) => {
+    const begin = `${number} `, own = Object.entries(frame.arrays).filter(([name]) => name.startsWith(begin));
+    return new Motion({ id: frame.id, header, arrays: Object.fromEntries(own.map(([name, array]) => [name.slice(begin.length), array])) }, digest, blocks[number]);
+  });
+}

@@ -1,10 +1,10 @@
 // Curves of the motion: quantities of points and links, with the cursor of the player.
-import { computed, effect, signal } from "@preact/signals";
+import { type Signal, computed, effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Chart, type ChartData } from "./chart";
 import { Icon } from "./icons";
 import type { Motion } from "./motion";
-import { motion, place, playing, scene, selection, still, tell } from "./state";
+import { motion, place, scene, seek, selection, still, tell } from "./state";
 import { fixed, say, sentence, unitText, withUnit } from "./words";
 
 interface Course {
@@ -86,17 +86,13 @@ const marks = computed(() => {
 
 const chosen = signal<string[]>([]);
 
-export function seek(at: number): void {
-  playing.value = false;
-  place.value = at;
-}
-
-export function ChartView({ data, cursor = true }: { data: ChartData; cursor?: boolean }) {
+// `cursor` is the place of the motion whose samples the curves have; null where they have others.
+export function ChartView({ data, cursor = place }: { data: ChartData; cursor?: Signal<number> | null }) {
   const holder = useRef<HTMLDivElement>(null), chart = useRef<Chart | null>(null);
   useEffect(() => {
-    const made = new Chart(holder.current!, cursor ? seek : null);
+    const made = new Chart(holder.current!, cursor && ((at) => seek(at, cursor)));
     chart.current = made;
-    const stop = effect(() => made.show(place.value));
+    const stop = effect(() => made.show(cursor?.value ?? 0));
     return () => {
       stop();
       made.end();

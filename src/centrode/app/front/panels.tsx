@@ -2,9 +2,10 @@
 import { effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { CamPanel } from "./cam";
+import { CourseView } from "./courses";
 import { ChartView, Missing, MotionPanel, signed } from "./motion_panel";
 import type { Block, Panel, TopicOption } from "./protocol";
-import { arrows, available, hello, motion, options, panelKey, panels, readiness, scene, selection, show, topic, waits } from "./state";
+import { arrows, available, hello, options, panelKey, panels, played, playedPlace, readiness, scene, selection, show, topic, waits } from "./state";
 import { fixed, say, sentence, spelled, typeset } from "./words";
 
 // Markup of the server's pictures and formulas, without anything that could act.
@@ -78,43 +79,7 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
   );
 }
 
-// A motion that begins again where it ends: lines of links between their points, moved by the time of the page.
-function SwingView({ block }: { block: Extract<Block, { kind: "swing" }> }) {
-  const svg = useRef<SVGSVGElement>(null);
-  const all = block.places.flat(), xs = all.filter((_, k) => k % 2 === 0), ys = all.filter((_, k) => k % 2 === 1);
-  const low = [Math.min(...xs), Math.min(...ys)], wide = [Math.max(...xs) - low[0]!, Math.max(...ys) - low[1]!];
-  const margin = 0.08 * Math.max(...wide, 1e-9), scale = 320 / (Math.max(...wide, 1e-9) + 2 * margin);
-  const place = (frame: number[], k: number): [number, number] => [(frame[2 * k]! - low[0]! + margin) * scale, (low[1]! + wide[1]! - frame[2 * k + 1]! + margin) * scale];
-  const line = (frame: number[], link: number[]): string => link.map((k, n) => `${n ? "L" : "M"}${place(frame, k).map((x) => x.toFixed(1)).join(" ")}`).join("") + (link.length > 2 ? "Z" : "");
-  useEffect(() => {
-    const root = svg.current, still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (!root || still) return;
-    const paths = [...root.querySelectorAll("path")], dots = [...root.querySelectorAll("circle")];
-    // No faster than the eye follows, no slower than it waits.
-    const period = 1000 * Math.min(Math.max(block.period, 1.2), 4), count = block.places.length - 1;
-    let handle = 0;
-    const draw = (now: number): void => {
-      const frame = block.places[Math.floor(((now % period) / period) * count)]!;
-      paths.forEach((path, k) => path.setAttribute("d", line(frame, block.links[k]!)));
-      dots.forEach((dot, k) => { const [x, y] = place(frame, k); dot.setAttribute("cx", x.toFixed(1)); dot.setAttribute("cy", y.toFixed(1)); });
-      handle = requestAnimationFrame(draw);
-    };
-    handle = requestAnimationFrame(draw);
-    return () => cancelAnimationFrame(handle);
-  }, [block]);
-  const first = block.places[0]!;
-  return (
-    <figure class="swing">
-      <svg ref={svg} role="img" aria-label={block.title || say("picture")} viewBox={`0 0 ${(wide[0]! + 2 * margin) * scale} ${(wide[1]! + 2 * margin) * scale}`}>
-        {block.links.map((link, k) => <path class={`hue-${k % 6}`} d={line(first, link)} />)}
-        {block.points.map((_, k) => { const [x, y] = place(first, k); return <circle class={block.fixed[k] ? "fixed" : ""} cx={x} cy={y} r={4} />; })}
-      </svg>
-      {block.title && <figcaption>{typeset(block.title)}</figcaption>}
-    </figure>
-  );
-}
-
-function BlockView({ block }: { block: Block }) {
+function BlockView({ block, among }: { block: Block; among: Block[] }) {
   const kept = useRef<{ block: Block; data: Parameters<typeof ChartView>[0]["data"][] } | null>(null);
   switch (block.kind) {
     case "facts":
@@ -134,10 +99,10 @@ function BlockView({ block }: { block: Block }) {
           {block.title && <figcaption>{block.title}</figcaption>}
         </figure>
       );
-    case "swing":
-      return <SwingView block={block} />;
+    case "motion":
+      return <CourseView block={block} among={among} />;
     case "plot": {
-      const now = motion.value, follows = Boolean(block.cursor) && now !== null && block.x.values.length === now.samples;
+      const now = played.value, follows = Boolean(block.cursor) && now !== null && block.x.values.length === now.samples;
       if (kept.current?.block !== block) {
         // Curves of one unit share a chart.
         const units = [...new Set(block.curves.map((curve) => curve.unit))];
@@ -146,6 +111,7 @@ function BlockView({ block }: { block: Block }) {
           block,
           data: units.map((unit) => ({
             title: [block.title, block.y?.label].filter(Boolean).join(": "), unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit) },
+            shaded: (block.shaded ?? []).flatMap(([from, to]) => (from === null || to === null ? [] : [{ from, to }])),
             places: (block.marks ?? []).flatMap((mark) => (mark.at === null ? [] : [{ at: mark.at, label: mark.label }])),
             lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
           })),
@@ -154,7 +120,7 @@ function BlockView({ block }: { block: Block }) {
       return (
         <figure class="chart">
           {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
-          {kept.current.data.map((data) => <ChartView data={data} cursor={follows} key={String(follows)} />)}
+          {kept.current.data.map((data) => <ChartView data={data} cursor={follows ? playedPlace.value : null} key={`${follows} ${now?.course !== null}`} />)}
         </figure>
       );
     }
@@ -211,6 +177,9 @@ const opened = signal(new Set<string>()); // topics whose options are shown
 // While a new sheet is computed the last one of its topic stays, so that nothing jumps.
 const last = new Map<string, Panel>();
 
+// What the player plays stands on top: its events, or the choice of a motion.
+const first = (blocks: Block[]): Block[] => [...blocks].sort((a, b) => Number(b.kind === "motion") - Number(a.kind === "motion"));
+
 function ServerPanel({ name }: { name: string }) {
   const why = available(name), key = panelKey(name), panel = panels.value.get(key), shown = panel ?? last.get(name);
   useEffect(() => void show(), [key]);
@@ -232,7 +201,7 @@ function ServerPanel({ name }: { name: string }) {
       )}
       {!shown && <p class="hint">{say("computing")}</p>}
       {shown?.missing && <Missing message={shown.missing} repair={shown.repair} />}
-      {shown?.blocks?.map((block, k) => <BlockView block={block} key={`${name} ${k} ${block.kind}`} />)}
+      {first(shown?.blocks ?? []).map((block, k) => <BlockView block={block} among={shown!.blocks} key={`${name} ${k} ${block.kind}`} />)}
     </div>
   );
 }

@@ -217,12 +217,23 @@ export interface Curve {
   x?: (number | null)[];
   dashed?: boolean;
 }
+export type EventSign = "impact" | "stick" | "slip" | "close" | "open" | "user" | "other";
+// A motion that a topic has found, with what its slider marks; instants in seconds.
+export interface MotionBlock {
+  kind: "motion";
+  number: number;
+  title?: string;
+  loops: boolean;
+  marks: { at: number; label: string; sign: EventSign }[];
+  held: { from: number; to: number; label: string }[];
+  events: { title: string; columns: string[]; rows: string[][]; count: number } | null; // a row for each of the first marks
+}
 export type Block =
   | { kind: "facts"; facts: Fact[] }
   | { kind: "table"; title?: string; columns: Column[]; rows: (string | number | null)[][] }
-  | { kind: "plot"; title?: string; x: Curve; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[] }
+  | { kind: "plot"; title?: string; x: Curve; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[]; shaded?: [number | null, number | null][] }
   | { kind: "picture"; title?: string; svg: string; dark?: string; alt?: string }
-  | { kind: "swing"; title?: string; period: number; points: string[]; fixed: boolean[]; links: number[][]; places: number[][] }
+  | MotionBlock
   | { kind: "formula"; text?: string; mathml?: string }
   | { kind: "paragraph"; text: string; item?: boolean }
   | { kind: "heading"; text: string }
@@ -234,6 +245,7 @@ export interface Panel {
   options?: TopicOption[];
   missing?: string;
   repair?: string;
+  frame?: Frame; // of the motions that it plays
 }
 export interface Completion {
   label: string;

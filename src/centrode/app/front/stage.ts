@@ -7,7 +7,7 @@ import { Picture, make } from "./picture";
 import { photo, scalePhoto } from "./photo";
 import { type Frame, type Place, type Reading, isFrame } from "./protocol";
 import * as state from "./state";
-import { ask, digest, edit, mode, motion, place, playing, scene, selection, tell } from "./state";
+import { ask, digest, drawn, edit, mode, motion, place, playing, resting, scene, selection, tell, topic } from "./state";
 import { say, spelled, withUnit } from "./words";
 
 const DEGREE = Math.PI / 180, DEGREE_STEPS = [1, 2, 5, 10, 15];
@@ -72,7 +72,7 @@ export class Stage {
       this.picture.shows = shows;
       const block = state.arrows.value;
       this.picture.forces = block && block.kind === "arrows" ? block : null;
-      place.value;
+      drawn.value.place.value;
       this.draw();
     });
     effect(() => {
@@ -94,7 +94,7 @@ export class Stage {
 
   // --- what is drawn ---------------------------------------------------------------------------------------------
   private rebuild(): void {
-    const now = scene.value, moving = motion.value, fits = state.fits.value;
+    const now = scene.value, moving = drawn.value.motion, fits = state.fits.value;
     this.picture.paper = this.spherical ? this.globe : this.plane;
     this.picture.motion = moving && moving.digest === digest.peek() ? moving : null;
     if (!now) {
@@ -114,12 +114,19 @@ export class Stage {
       if (!now.points.length || this.picture.motion || state.still.value) this.fitted = fits;
       this.fit();
     }
+    // what a topic has found goes elsewhere than the drives do
+    const found = this.picture.motion?.course ? topic.peek() : "";
+    if (this.found !== found) {
+      this.found = found;
+      if (this.fits) this.fit();
+    }
     this.picture.showTracks();
     this.draw();
   }
+  private found = "";
 
   private where(): { place: (name: string) => Place | null; angle: (link: string) => number } {
-    const { live } = this, moving = this.picture.motion, at = place.peek();
+    const { live } = this, moving = this.picture.motion, at = drawn.peek().place.peek();
     const here = new Map(scene.peek()?.points.map((point) => [point.name, point.at]));
     return {
       place: (name) => live?.points.get(name) ?? (moving && moving.point(name) >= 0 ? moving.place(name, at) : null) ?? here.get(name) ?? null,
@@ -128,7 +135,7 @@ export class Stage {
   }
 
   draw(): void {
-    this.picture.show(this.where(), this.picture.motion ? place.peek() : null);
+    this.picture.show(this.where(), this.picture.motion ? drawn.peek().place.peek() : null);
   }
 
   private resize(): void {
@@ -156,14 +163,14 @@ export class Stage {
       low[axis] = Math.min(low[axis]!, value);
       high[axis] = Math.max(high[axis]!, value);
     });
-    const moving = this.picture.motion;
+    const moving = this.picture.motion, stride = Math.max(4, Math.ceil((moving?.samples ?? 0) / 400));
     for (const point of scene.peek()?.points ?? []) {
       take(point.at);
-      if (moving) for (let k = 0; k < moving.samples; k += 4) take(moving.place(point.name, k));
+      if (moving) for (let k = 0; k < moving.samples; k += stride) take(moving.place(point.name, k));
     }
     for (const wheel of scene.peek()?.wheels ?? []) {
       const places = [scene.peek()!.points.find((one) => one.name === wheel.centre)?.at ?? null];
-      if (moving) for (let k = 0; k < moving.samples; k += 4) places.push(moving.place(wheel.centre, k));
+      if (moving) for (let k = 0; k < moving.samples; k += stride) places.push(moving.place(wheel.centre, k));
       for (const at of places) if (at) for (const side of [-wheel.radius, wheel.radius]) take([at[0]! + side, at[1]! + side]);
     }
     for (const cam of moving?.cams ?? []) {
@@ -404,11 +411,17 @@ export class Stage {
 
   // Drawing and editing happen where the description has everything: at the initial position.
   private initial(): boolean {
-    playing.value = false;
+    this.rest();
     const start = motion.value?.start ?? 0;
     if (!this.picture.motion || Math.abs(place.value - start) < 1e-6) return true;
     place.value = start;
     return false;
+  }
+
+  // The motion that a topic has found makes way for the description.
+  private rest(): void {
+    playing.value = false;
+    resting.value = true;
   }
 
   // --- drawing ---------------------------------------------------------------------------------------------------
@@ -533,7 +546,7 @@ export class Stage {
   // One request is on its way; of places that come meanwhile the latest is sent when it is back.
   private held(name: string, how: "edit" | "move", event: PointerEvent, chosen: Target | null = { kind: "point", name }): NonNullable<Stage["gesture"]> {
     const begun = how === "edit" ? this.initial() : true;
-    playing.value = false;
+    this.rest();
     const point = scene.value?.points.find((one) => one.name === name), allowed = point?.handles[how] ?? false;
     const touch = event.pointerType === "touch", grip = this.flatOf(name), off = grip ? minus(this.begun, grip) : [0, 0];
     const drag = new Drag(name, how, (frame) => this.follow(frame));
@@ -720,6 +733,7 @@ export class Stage {
       return;
     }
     if (how === "edit") this.initial();
+    this.rest();
     this.nudging = this.nudging.then(async () => {
       const now = this.where().place(name);
       if (!now) return;

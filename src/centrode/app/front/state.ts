@@ -1,8 +1,8 @@
 // The state of the page: the text of a description, and what the server says of it.
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import { Connection, type Request, SUPERSEDED } from "./connection";
 import { History, type KeptStep, type TextFile } from "./history";
-import { type Motion, motionOf } from "./motion";
+import { type Motion, coursesOf, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
 import { pack, unpack } from "./share";
 import { token } from "./token";
@@ -27,7 +27,7 @@ export const saved = signal<string | null>(null); // the text as the file has it
 export const selection = signal<string[]>([]);
 export const mode = signal<Mode>("draw");
 export const snapping = signal(true);
-export const place = signal(0); // of the player, between samples
+export const place = signal(0); // of the motion by the drives' laws, between samples
 export const playing = signal(false);
 export const speed = signal(0); // of the player, as a power of two
 export const shows = signal<Record<string, boolean>>({ paths: true, names: true, velocities: false, accelerations: false, grid: true });
@@ -39,6 +39,26 @@ export const editing = signal(false); // whether the text pane is open
 export const said = signal<{ text: string; bad: boolean }>({ text: "", bad: false });
 export const steps = signal({ undo: false, redo: false });
 export const arrows = signal<import("./protocol").Block | null>(null);
+// A motion that the open topic has found is played in place of that by the drives' laws, with a place of its own. While
+// somebody draws or drags it rests, and the drawing shows the description.
+export const courses = signal<{ key: string; motions: Motion[] }>({ key: "", motions: [] });
+export const chosenCourse = signal<Record<string, number>>({}); // topic -> number of its motion
+export const coursePlace = signal(0);
+export const resting = signal(false);
+export const course = computed<Motion | null>(() => {
+  const { motions } = courses.value;
+  return motions[Math.min(chosenCourse.value[topic.value] ?? 0, motions.length - 1)] ?? null;
+});
+export const played = computed<Motion | null>(() => course.value ?? motion.value); // by the player
+export const playedPlace = computed(() => (course.value ? coursePlace : place)); // the signal of its place
+export const drawn = computed(() => (course.value && !resting.value ? { motion: course.value, place: coursePlace } : { motion: motion.value, place }));
+export function seek(at: number, of = playedPlace.peek()): void {
+  batch(() => {
+    playing.value = false;
+    resting.value = false;
+    of.value = at;
+  });
+}
 export const unsaved = computed(() => saved.value !== null && saved.value !== text.value);
 
 let history = new History("");
@@ -205,12 +225,38 @@ export async function show(): Promise<void> {
   const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {}, samples: SAMPLES }, "panel");
   if (waits.value === key) waits.value = null;
   if (answer === SUPERSEDED) return;
-  const panel: Panel = answer.error ? { topic: name, title: name, blocks: [], missing: answer.error.message, repair: answer.error.repair } : answer;
+  const panel: Panel = answer.error ? { topic: name, title: name, blocks: [], missing: answer.error.message, repair: answer.error.repair }
+    : isFrame(answer) ? { ...(answer.header as Panel), frame: answer } : answer;
   const next = new Map(panels.value);
   next.set(key, panel);
   while (next.size > 60) next.delete(next.keys().next().value!);
+  // motions are large: of few the numbers are kept
+  for (const old of [...next].filter(([, one]) => one.frame).slice(0, -MOTIONS_KEPT)) next.delete(old[0]);
   panels.value = next;
 }
+const MOTIONS_KEPT = 6;
+
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+effect(() => {
+  const name = topic.value, key = panelKey(name), panel = panels.value.get(key), before = courses.peek();
+  const [was] = before.key.split(" ", 1), own = `${name} ${key}`;
+  if (before.key === own || (panel === undefined && was === name && available(name) === true)) return; // what was computed last stays until the new one is there
+  const found = { key: panel ? own : "", motions: panel ? coursesOf(panel, digest.peek()) : [] };
+  if (!found.motions.length && !before.motions.length) {
+    if (before.key !== found.key) courses.value = found;
+    return;
+  }
+  batch(() => {
+    courses.value = found;
+    if (was === name && before.motions.length && found.motions.length) {
+      coursePlace.value = Math.min(coursePlace.peek(), course.peek()?.last ?? 0);
+      return;
+    }
+    coursePlace.value = 0;
+    resting.value = false;
+    playing.value = Boolean(course.peek()?.course?.loops) && !calm.matches;
+  });
+});
 effect(() => {
   topic.value;
   options.value;

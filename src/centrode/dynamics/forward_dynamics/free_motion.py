@@ -157,6 +157,7 @@ class FreeMotion:
         scheme: str = ADAPTIVE,
         executor: str = "auto",
         progress: Callable[[float], None] | None = None,
+        at_events: bool = False,
     ) -> Trajectory:
         """The motion from a state.
 
@@ -168,6 +169,7 @@ class FreeMotion:
         scheme : "adaptive", explicit; "stiff", implicit
         executor : "auto", "machine code" or "arrays"
         progress : called with the time reached [s]
+        at_events : also at the instants of events, as it goes on behind them
 
         Raises
         ------
@@ -191,6 +193,8 @@ class FreeMotion:
         take = integration.explicit_steps if scheme == ADAPTIVE else integration.implicit_steps
         steps = take(start, duration, tolerance, executor, progress)
         reached = float(steps.rows[0, -1])
+        if at_events:
+            times = np.union1d(times, [event.time for event in steps.events])
         times = times[times <= reached] if steps.ended != DURATION else np.minimum(times, reached)
         states = integration.states_at(steps, times, executor)
         return trajectory_of(

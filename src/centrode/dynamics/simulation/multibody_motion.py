@@ -178,6 +178,7 @@ class MultibodySetting:
         at: npt.ArrayLike | None = None,
         executor: str = "auto",
         progress: Callable[[float], None] | None = None,
+        at_events: bool = False,
     ) -> Trajectory:
         """Integrate the motion; `progress` is called with the share that is done."""
         duration, instants = self.duration, self.instants(at)
@@ -192,6 +193,7 @@ class MultibodySetting:
             scheme=self.settings.scheme,
             executor=executor,
             progress=reached,
+            at_events=at_events,
         )
 
     def _check_size(self, count: int) -> None:
@@ -225,10 +227,11 @@ def simulate_multibody(
     executor: str = "auto",
     progress: Callable[[float], None] | None = None,
     reactions: bool = False,
+    at_events: bool = False,
 ) -> xr.Dataset:
     """The labelled motion of a mechanism that is left to its loads, with any number of degrees of freedom."""
     setting = multibody_setting(mechanism, settings)
-    return multibody_dataset(setting, setting.run(at, executor, progress), reactions)
+    return multibody_dataset(setting, setting.run(at, executor, progress, at_events), reactions)
 
 
 # The result with names.

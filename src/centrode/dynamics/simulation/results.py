@@ -85,6 +85,7 @@ def simulation_results(
     settings: Simulation | None = None,
     motion: bool = False,
     reactions: bool = False,
+    at_events: bool = False,
     progress: Tell | None = None,
     **changes: Any,
 ) -> SimulationResults:
@@ -96,6 +97,7 @@ def simulation_results(
     settings : in place of those of the description
     motion : also places, velocities and accelerations of everything
     reactions : also the reactions in all joints, by the equations of all links
+    at_events : also at the instants of events, by the equations of all links
     progress : called with the share that is done
     changes : `duration`, `turns`, `driving`, `speed`, `speeds`, `keeps`, `equations`, `scheme`, `steps`, `tolerance`,
         `at` in place of those of the settings
@@ -114,7 +116,9 @@ def simulation_results(
     duration
     """
     used = changed_settings(mechanism, samples, settings=settings, **changes)
-    run = simulate(mechanism, used, motion=motion, reactions=reactions, progress=progress)
+    run = simulate(
+        mechanism, used, motion=motion, reactions=reactions, progress=progress, at_events=at_events
+    )
     return _with_regime(mechanism, used, run)
 
 

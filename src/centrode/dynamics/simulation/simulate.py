@@ -39,6 +39,7 @@ def simulate(
     vary: Mapping[str, Any] | None = None,
     threads: int | None = None,
     gradients: Sequence[str] = (),
+    at_events: bool = False,
 ) -> xr.Dataset:
     """The motion of a mechanism under its loads and what drives it, or the states of many that differ in numbers.
 
@@ -66,6 +67,9 @@ def simulate(
     gradients : paths of numbers of the description
         Also the derivatives of the motion by these, by the equations of all links: `coordinate_gradient`,
         `speed_gradient`, `position_gradient` and `point_speed_gradient` by `number`.
+    at_events : bool
+        Also the instants of impacts, sticking, opening and all other events, as the motion goes on behind them, by
+        the equations of all links; the reduced equation has none at which anything jumps.
 
     Returns
     -------
@@ -113,7 +117,7 @@ def simulate(
         return many
     if settings is not None and equations_for(mechanism, settings) == MULTIBODY:
         run: xr.Dataset = _multibody().simulate_multibody(
-            mechanism, settings, at, executor, progress, reactions
+            mechanism, settings, at, executor, progress, reactions, at_events
         )
         if gradients:
             run = _gradients().add_gradients(mechanism, settings, run, gradients, executor)

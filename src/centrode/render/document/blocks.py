@@ -228,7 +228,8 @@ class Moving:
     start : the sample shown first
     box : lower left and upper right corner (2, 2) [m] of what is seen; all places if None
     number : of the figure in its document, from 1; 0 of one that has none
-    marks : (share of the way from the first to the last sample, name) of what the slider marks
+    marks : (share of the way from the first to the last sample, name, sign) of the events that the slider marks
+    held : (two such shares, name) of the stretches that it shades
     """
 
     places: Mapping[str, np.ndarray]
@@ -248,7 +249,8 @@ class Moving:
     start: int = 0
     box: np.ndarray | None = None
     number: int = 0
-    marks: tuple[tuple[float, str], ...] = ()
+    marks: tuple[tuple[float, str, str], ...] = ()
+    held: tuple[tuple[float, float, str], ...] = ()
 
 
 Block: TypeAlias = (

@@ -152,8 +152,10 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Paragraph(text, clause):
             spelled = spelling.text(text)
             return blocks.ParagraphBlock(f"{spelled[:1].upper()}{spelled[1:]}." if clause else spelled)
-        case MotionPlayer(mechanism, motion, by_time, marks=marks):
-            return moving_of(mechanism, motion, by_time, [(spelling.text(name), at) for name, at in marks])
+        case MotionPlayer(mechanism, motion, by_time, marks, held):
+            named = [(spelling.text(one.name), one.time, one.sign) for one in marks]
+            stretches = [(spelling.text(one.name), one.begin, one.end) for one in held]
+            return moving_of(mechanism, motion, by_time, named, stretches)
         case Formula(lines, name):
             return blocks.FormulaBlock(tuple(tuple(map(spelling.mathematics, line)) for line in lines), name)
         case Reference(text):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -183,6 +184,8 @@ def _cylinders(scene: LinkageScene, samples: Samples) -> Iterator[Outline]:
 
 MOST = 720
 """Samples of a motion that are played; of more, evenly chosen ones."""
+SLIDER_PLACES = 500
+"""Places of a slider that the eye tells apart: events nearer than that share a mark."""
 INCHES = 5.2
 DIGITS = 4
 """Of the drive's greatest value."""
@@ -192,7 +195,8 @@ def moving_of(
     mechanism: Mechanism,
     motion: xarray.Dataset,
     by_time: bool = False,
-    marks: Sequence[tuple[str, float]] = (),
+    marks: Sequence[tuple[str, float, str]] = (),
+    held: Sequence[tuple[str, float, float]] = (),
 ) -> Moving:
     """A motion to be played, in the plane or on the sphere.
 
@@ -203,7 +207,8 @@ def moving_of(
         Of `motion`; the samples that hang together with the initial position are played.
     by_time : bool
         The slider goes through time, as for the motion of a simulation, which may pass a value of the drive again.
-    marks : names and instants [s] that the slider marks
+    marks : names, instants [s] and signs of the events that the slider marks
+    held : names, begins and ends [s] of the stretches that it shades
 
     Raises
     ------
@@ -239,19 +244,53 @@ def moving_of(
         start=int(np.argmin(np.abs(chosen - initial_sample(scene, motion)))),
         box=np.array([scene.low, scene.high]) / factor,
         marks=_marks(motion, chosen, marks),
+        held=_held(motion, chosen, held),
     )
 
 
+def _shares(motion: xarray.Dataset, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times of the chosen samples, and how far on the way of a slider through them each is."""
+    times = np.asarray(motion["time"].values, dtype=np.float64)[chosen]
+    return times, np.arange(len(chosen)) / (len(chosen) - 1)
+
+
 def _marks(
-    motion: xarray.Dataset, chosen: np.ndarray, marks: Sequence[tuple[str, float]]
-) -> tuple[tuple[float, str], ...]:
-    """Marks on the way of a slider through the chosen samples, whose places are parts of them."""
+    motion: xarray.Dataset, chosen: np.ndarray, marks: Sequence[tuple[str, float, str]]
+) -> tuple[tuple[float, str, str], ...]:
+    """Marks on the way of a slider; of those that would lie on each other the first, with the names of all."""
     if not marks or len(chosen) < 2:
         return ()
-    times = np.asarray(motion["time"].values, dtype=np.float64)[chosen]
-    shares = np.arange(len(chosen)) / (len(chosen) - 1)
+    times, shares = _shares(motion, chosen)
+    # what ended the motion lies behind its last sample
+    end = times[-1] + (times[-1] - times[-2])
+    names: dict[tuple[int, str], list[str]] = {}
+    places: dict[tuple[int, str], float] = {}
+    for name, at, sign in marks:
+        if times[0] <= at <= end:
+            share = float(np.interp(at, times, shares))
+            key = (round(share * SLIDER_PLACES), sign)
+            names.setdefault(key, []).append(name)
+            places.setdefault(key, share)
+    return tuple((places[key], _names_text(own), key[1]) for key, own in names.items())
+
+
+def _names_text(names: Sequence[str]) -> str:
+    """The names of events that share a mark, each once, with its count."""
+    counts = Counter(names)
+    return ", ".join(name if count == 1 else f"{name} ×{count}" for name, count in counts.items())
+
+
+def _held(
+    motion: xarray.Dataset, chosen: np.ndarray, held: Sequence[tuple[str, float, float]]
+) -> tuple[tuple[float, float, str], ...]:
+    """Stretches on the way of a slider."""
+    if not held or len(chosen) < 2:
+        return ()
+    times, shares = _shares(motion, chosen)
     return tuple(
-        (float(np.interp(at, times, shares)), name) for name, at in marks if times[0] <= at <= times[-1]
+        (float(np.interp(begin, times, shares)), float(np.interp(end, times, shares)), name)
+        for name, begin, end in held[:SLIDER_PLACES]
+        if begin < times[-1] and end > times[0]
     )
 
 

@@ -1,4 +1,6 @@
 // Plays the motions of a page: by time, step by step, and by dragging what the drive moves.
+const SAME = 1e-3; // samples: a place that was gone to is that of its event
+
 class Stage extends Picture {
   constructor(holder, ...data) {
     super(holder, ...data);
@@ -16,7 +18,8 @@ class Stage extends Picture {
   }
 
   tell() {
-    const said = this.data.texts[Math.round(this.place)];
+    const here = (this.marks ?? []).filter((one) => Math.abs(one.at - this.place) < SAME).map((one) => one.name);
+    const said = [this.data.texts[Math.round(this.place)], ...here].join(" · ");
     this.output.textContent = said;
     this.slider.value = String(this.place);
     this.slider.setAttribute("aria-valuetext", said);
@@ -34,6 +37,10 @@ class Stage extends Picture {
     find("back").addEventListener("click", () => this.step(-1));
     find("on").addEventListener("click", () => this.step(1));
     this.slider.addEventListener("input", () => this.go(Number(this.slider.value)));
+    this.marks = [...this.holder.querySelectorAll(".tick")].map((one) => ({ at: this.last * Number(one.dataset.share), name: one.title }));
+    this.marks.sort((one, other) => one.at - other.at);
+    this.holder.querySelector(".ticks")?.addEventListener("click", (event) => this.near(event));
+    this.slider.addEventListener("keydown", (event) => this.leap(event));
     find("speed").addEventListener("input", (event) => { this.speed = 2 ** Number(event.target.value); });
     find("paths").addEventListener("change", (event) => this.switch(this.paths, event.target.checked));
     find("names").addEventListener("change", (event) => this.switch(this.names, event.target.checked));
@@ -43,6 +50,22 @@ class Stage extends Picture {
     this.holder.querySelector(".controls").hidden = false;
     this.holder.addEventListener("keydown", (event) => this.key(event));
     window.addEventListener("beforeprint", () => this.play(false));
+  }
+
+  // A click on the strip of events goes to the mark that is nearest.
+  near(event) {
+    if (!this.marks.length) return;
+    const box = event.currentTarget.getBoundingClientRect(), at = (this.last * (event.clientX - box.left)) / box.width;
+    this.go(this.marks.reduce((best, one) => (Math.abs(one.at - at) < Math.abs(best.at - at) ? one : best)).at);
+  }
+
+  // Page keys on the slider go from event to event.
+  leap(event) {
+    const on = event.key === "PageUp" ? 1 : event.key === "PageDown" ? -1 : 0;
+    if (!on || !this.marks.length) return;
+    event.preventDefault();
+    const found = on > 0 ? this.marks.find((one) => one.at > this.place + SAME) : this.marks.filter((one) => one.at < this.place - SAME).at(-1);
+    if (found) this.go(found.at);
   }
 
   switch(group, on) {

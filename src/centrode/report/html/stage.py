@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -76,7 +76,7 @@ def stage_of(moving: Moving, still: str) -> str:
     return (
         f'<div class="moving" role="group" aria-label="{label}">'
         f'<div class="paper" tabindex="0" aria-label="{label}">{still}</div>'
-        f'{controls_of(first, marks=moving.marks)}<script type="application/json">{data}</script></div>'
+        f'{controls_of(first, ticks=_ticks(moving))}<script type="application/json">{data}</script></div>'
     )
 
 
@@ -96,11 +96,8 @@ _MARKERS = {
 """Outlines of the markers of links that share a colour, in thousandths of an inch as the picture is."""
 
 
-def controls_of(first: str, more: str = "", marks: Sequence[tuple[float, str]] = ()) -> str:
-    """The controls of a player; `first` says where it begins, `more` are elements behind its own.
-
-    `marks` are shares of the slider's way with a name: they are drawn under it.
-    """
+def controls_of(first: str, more: str = "", ticks: str = "") -> str:
+    """The controls of a player; `first` says where it begins, `more` are elements behind its own, `ticks` under it."""
 
     def word(text: str) -> str:
         return html.escape(text)
@@ -108,8 +105,8 @@ def controls_of(first: str, more: str = "", marks: Sequence[tuple[float, str]] =
     play, back, on = word(_("Play")), word(_("One step back")), word(_("One step on"))
     position, speed, paths, names = word(_("Position")), word(_("speed")), word(_("paths")), word(_("names"))
     seek = f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
-    if marks:
-        seek = f'<span class="way">{seek}{_ticks(marks)}</span>'
+    if ticks:
+        seek = f'<span class="way">{seek}{ticks}</span>'
     return (
         '<div class="controls" hidden>'
         f'<button type="button" data-do="play" title="{play}" aria-label="{play}">{PLAY_ICON}</button>'
@@ -176,17 +173,36 @@ def _data(moving: Moving) -> dict[str, Any]:
     return found
 
 
-def _ticks(marks: Sequence[tuple[float, str]]) -> str:
-    """A strip under the slider with a mark at each event."""
-    lines = "".join(
-        f'<rect x="{1000 * share - 2:.1f}" y="0" width="4" height="8"><title>{html.escape(name)}</title></rect>'
-        for share, name in marks
+TICKS: Mapping[str, str] = {
+    "impact": "M-3 0L3 0L0 9Z",
+    "stick": "M-3 0H3V6H-3Z",
+    "slip": "M-3 6L3 6L0 0Z",
+    "close": "M-2.5 0H2.5V9H-2.5Z",
+    "open": "M-3 0H3V6H-3ZM-1.5 1.5H1.5V4.5H-1.5Z",
+    "user": "M0 0L3 4.5L0 9L-3 4.5Z",
+    "other": "M-1 0H1V9H-1Z",
+}
+"""Outline of the mark of an event by its sign, about its place on the slider [px]."""
+
+
+def _ticks(moving: Moving) -> str:
+    """A strip under the slider with a mark at each event, and what is held shaded; a click goes to the mark."""
+    if not (moving.marks or moving.held):
+        return ""
+    bands = "".join(
+        f'<span class="held" style="left:{100 * begin:.2f}%;width:{max(100 * (end - begin), 0.2):.2f}%" '
+        f'title="{html.escape(name)}"></span>'
+        for begin, end, name in moving.held
+    )
+    marks = "".join(
+        f'<span class="tick {sign}" style="left:{100 * share:.2f}%" data-share="{share:.6f}" '
+        f'title="{html.escape(name)}"><svg viewBox="-4 0 8 9" aria-hidden="true"><path fill-rule="evenodd" '
+        f'd="{TICKS[sign]}"/></svg></span>'
+        for share, name, sign in moving.marks
     )
     said = html.escape(_("Events of the motion"))
-    return (
-        f'<svg class="ticks" viewBox="0 0 1000 8" preserveAspectRatio="none" role="img" aria-label="{said}">'
-        f"{lines}</svg>"
-    )
+    listed = html.escape("; ".join(name for _share, name, _sign in moving.marks))
+    return f'<span class="ticks" role="img" aria-label="{said}: {listed}">{bands}{marks}</span>'
 
 
 def look_of_link(number: int) -> dict[str, str]:
