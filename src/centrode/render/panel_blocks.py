@@ -281,6 +281,9 @@ class _Writer:
         title = getattr(picture, "title", None)
         words = name if title is None else self.spelling.text(title)
         figure = render.figure_of(picture, self.display)
+        if title is not None:  # it stands below the picture, and what the mechanism is called above the page
+            figure.suptitle("").set_in_layout(False)
+        render.spell_decimals(figure)
         light = render.svg_of(figure).decode()
         dark = render.svg_of(render.darkened(figure)).decode()
         return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
