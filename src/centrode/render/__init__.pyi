@@ -1,7 +1,6 @@
 # One import an entry and one name an import: lazy_loader reads these lines.
-from .document.figures import svg_of as svg_of
+from .document.scale import screen_svg as screen_svg
 from .drawing.style import darkened as darkened
-from .figures.files import spell_decimals as spell_decimals
 from .figures.pictures import figure_of as figure_of
 from .figures.pictures import figures_of as figures_of
 from .figures.pictures import write_pictures as write_pictures

@@ -198,8 +198,9 @@ class _Writer:
     def _cells(self, column: Column, rows: Iterable[int]) -> list[Any]:
         if not isinstance(column.values, np.ndarray):
             return [self.spelling.text(column.values[row]) for row in rows]
-        if column.units:
-            return [self.spelling.text(Number(float(column.values[row]), column.units[row])) for row in rows]
+        if column.units:  # which another column names
+            shown = [(column.values[row], column.units[row]) for row in rows]
+            return [self.spelling.text(Number(float(value), unit, unit_hidden=True)) for value, unit in shown]
         factor = self._shown(column.unit, column.unit_fixed)[0]
         return [_number(float(column.values[row]) * factor) for row in rows]
 
@@ -281,11 +282,8 @@ class _Writer:
         title = getattr(picture, "title", None)
         words = name if title is None else self.spelling.text(title)
         figure = render.figure_of(picture, self.display)
-        if title is not None:  # it stands below the picture, and what the mechanism is called above the page
-            figure.suptitle("").set_in_layout(False)
-        render.spell_decimals(figure)
-        light = render.svg_of(figure).decode()
-        dark = render.svg_of(render.darkened(figure)).decode()
+        light = render.screen_svg(figure, picture).decode()
+        dark = render.screen_svg(render.darkened(figure), picture).decode()
         return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
 
     def arrows(self, arrows: PointArrows) -> JSON:

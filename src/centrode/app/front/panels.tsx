@@ -7,6 +7,7 @@ import type { Block, Panel, TopicOption } from "./protocol";
 import { arrows, available, hello, motion, options, panelKey, panels, readiness, scene, selection, show, topic, waits } from "./state";
 import { fixed, say, sentence, spelled, typeset } from "./words";
 
+const LEAST_SCALE = 1.16, MOST_SCALE = 1.75; // pixels of a point of paper
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
   const holder = useRef<HTMLDivElement>(null);
@@ -20,6 +21,9 @@ export function Markup({ text, className, label }: { text: string; className: st
     if (picture && label) {
       picture.setAttribute("role", "img");
       picture.setAttribute("aria-label", label);
+      // Its letters are as great as those about it, however wide it is on paper.
+      const points = parseFloat(picture.getAttribute("width") ?? "");
+      if (points) Object.assign(picture.style, { minWidth: `${LEAST_SCALE * points}px`, maxWidth: `${MOST_SCALE * points}px` });
     }
     const element = holder.current!;
     element.replaceChildren(...parsed.body.childNodes);
@@ -70,7 +74,7 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
         <table>
           <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}>{column.head}{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
-            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : typeset(cell ?? "")}</td>)}</tr>)}
+            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : <Symbols text={typeset(cell ?? "")} />}</td>)}</tr>)}
           </tbody>
         </table>
       </div>
@@ -153,7 +157,7 @@ function BlockView({ block }: { block: Block }) {
       }
       return (
         <figure class="chart">
-          {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
+          {(block.title || block.y?.label) && <figcaption class="head"><span><Symbols text={block.title ?? ""} /></span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
           {kept.current.data.map((data) => <ChartView data={data} cursor={follows} key={String(follows)} />)}
         </figure>
       );
