@@ -137,7 +137,7 @@ def numbered_pen(number: int, colours: Sequence[str] = PALETTE) -> Pen:
     return Pen(colours[number % len(colours)], marker=marker)
 
 
-def marked(pen: Pen, at: Any = 0.12) -> dict[str, Any]:
+def marker_options(pen: Pen, at: Any = 0.12) -> dict[str, Any]:
     """The marker of a pen for a line of matplotlib: along a curve, or in the places `at` of it; nothing without one."""
     if not pen.marker:
         return {}
@@ -161,7 +161,7 @@ LEAST = 0.58  # lightness that a coloured line gets at least
 TINT = 0.8  # lightness of areas that are tints of the ground, at least
 
 
-def darkened(figure: Figure) -> Figure:
+def darken(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
     axes: list[Any] = figure.axes
     axis = [one for pair in axes for one in (pair.xaxis, pair.yaxis)]
