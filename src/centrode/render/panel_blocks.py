@@ -44,6 +44,8 @@ ROWS = 400
 """Rows of a table that a page shows; its files have all of them."""
 PICTURES = 40
 """Pictures of one panel."""
+UNITS = "unit"
+"""Name of the column in which tables have the units of their rows."""
 DIGITS = 7
 """Significant digits of numbers on their way to a page, which shows fewer."""
 
@@ -177,7 +179,8 @@ class _BlockWriter:
         rows = (
             range(count) if count <= ROWS else np.unique(np.linspace(0, count - 1, ROWS).round().astype(int))
         )
-        cells = [self._cells(column, rows) for column in columns]
+        named = any(column.name == UNITS for column in columns)
+        cells = [self._cells(column, rows, named) for column in columns]
         return {
             "kind": "table",
             "title": self.spelling.text(table.caption),
@@ -195,12 +198,15 @@ class _BlockWriter:
             "numeric": column.is_numeric,
         }
 
-    def _cells(self, column: Column, rows: Iterable[int]) -> list[Any]:
+    def _cells(self, column: Column, rows: Iterable[int], units_named: bool) -> list[Any]:
         if not isinstance(column.values, np.ndarray):
             return [self.spelling.text(column.values[row]) for row in rows]
-        if column.units:  # which another column names
+        if column.units:
             shown = [(column.values[row], column.units[row]) for row in rows]
-            return [self.spelling.text(Number(float(value), unit, unit_hidden=True)) for value, unit in shown]
+            return [
+                self.spelling.text(Number(float(value), unit, unit_hidden=units_named))
+                for value, unit in shown
+            ]
         factor = self._shown(column.unit, column.unit_fixed)[0]
         return [_number(float(column.values[row]) * factor) for row in rows]
 

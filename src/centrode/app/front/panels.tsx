@@ -72,7 +72,7 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
       {block.title && <p class="caption">{block.title}</p>}
       <div class={shown.length > LONG ? "table scroll long" : "table scroll"} tabindex={0} role="region" aria-label={block.title || say("table")}>
         <table>
-          <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}>{column.head}{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
+          <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}><Symbols text={column.head} />{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
             {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : <Symbols text={typeset(cell ?? "")} />}</td>)}</tr>)}
           </tbody>
