@@ -135,7 +135,7 @@ function BlockView({ block }: { block: Block }) {
       return (
         <figure>
           <Markup className={block.dark && dark.value ? "paper dark" : "paper"} text={block.dark && dark.value ? block.dark : block.svg} label={block.alt || block.title || say("picture")} />
-          {block.title && <figcaption>{block.title}</figcaption>}
+          {block.title && <figcaption><Symbols text={block.title} /></figcaption>}
         </figure>
       );
     case "swing":
