@@ -1,12 +1,13 @@
-"""Look at every panel of the workbench: in each language, at three widths, by day and at night.
+"""Look at every panel and page of the workbench: in each language, at three widths, by day and at night.
 
-python -m tools.app_panels FOLDER [--topics NAME ...] [--languages CODE ...] [--audit] [--square] [--blind]
+python -m tools.app_panels FOLDER [--topics NAME ...] [--descriptions NAME ...] [--languages CODE ...]
+    [--audit] [--square] [--blind]
 
 For each panel it writes one sheet a width, with the panel in all languages by day and at night (with --square by day or
 at night, turn about), and prints what does not fit: what is wider than the page or its panel, words that are cut, small
 letters, scrolled boxes inside scrolled boxes, panels that stay empty, what the console says, and what of a Russian or
-Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too, at the two narrower widths. It
-needs a Chromium and playwright, as the tests of pages do.
+Ukrainian panel is in Latin letters. With --audit axe-core looks at every panel too. The pages of gears and of
+syntheses are looked at whole, as `gears` and `synthesis`. It needs a Chromium and playwright, as the tests of pages do.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ import io
 import re
 import shutil
 import sys
+import time
 import zlib
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -34,8 +37,7 @@ from tools.report_picture import BROWSERS
 AXE = Path(__file__).parents[1] / "tests" / "report" / "axe" / "axe.min.js"
 LANGUAGES = ("en", "ru", "uk")
 SCHEMES = ("light", "dark")
-WIDTHS = (400, 1000, 1920)
-AUDITED = WIDTHS[:2]
+WIDTHS = (400, 1000, 1600)
 HEIGHT = 900
 TALLEST = 2400
 """Pixels of a panel that a sheet shows."""
@@ -100,9 +102,13 @@ AGAIN = {
     "door-closer": ("simulate", "equilibrium"),
 }
 """Panels that look otherwise of some descriptions."""
-FITS = """() => {
-  const panel = document.querySelector("#panel"), page = document.documentElement, said = [];
-  const card = document.querySelector(".card.panel").getBoundingClientRect();
+PAGES = {"gears": "#facts td", "synthesis": "#answers .card"}
+"""Further pages, and what is there once they are ready."""
+POINTS = "0 0\n40 0\n60 30\n50 60\n0 60\n-10 30"
+"""Points of a path [mm] for which the page of syntheses finds mechanisms."""
+FITS = """(where) => {
+  const panel = document.querySelector(where), page = document.documentElement, said = [];
+  const card = (panel.closest(".card.panel") ?? panel).getBoundingClientRect();
   if (page.scrollWidth > page.clientWidth) said.push(`the page is ${page.scrollWidth - page.clientWidth} too wide`);
   const say = (what, one) => {
     const text = (one.value ?? one.textContent ?? "").trim().slice(0, 50);
@@ -122,6 +128,7 @@ FITS = """() => {
     if (high && scrolls(one, "Y") && !one.matches(".long")) say("scrolled in the panel", one);
     const own = [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
     if (!own) continue;
+    if (/(^|[ (])--[a-z]/.test(one.textContent)) say("an option of the command", one);
     if (parseFloat(getComputedStyle(one).fontSize) < 11) say("small", one);
     const range = document.createRange();
     range.selectNodeContents(one);
@@ -131,8 +138,8 @@ FITS = """() => {
   if (!panel.textContent.trim()) said.push("empty");
   return said;
 }"""
-AUDIT = """async () => {
-  const found = await axe.run({include: ["#panel"], exclude: [[".paper svg > *"]]}, {resultTypes: ["violations"]});
+AUDIT = """async (where) => {
+  const found = await axe.run({include: [where], exclude: [[".paper svg > *"]]}, {resultTypes: ["violations"]});
   return found.violations.filter((one) => ["serious", "critical"].includes(one.impact))
     .map((one) => `${one.id}: ${one.nodes.slice(0, 2).map((node) => node.html.slice(0, 120)).join(" | ")}`);
 }"""
@@ -141,6 +148,7 @@ WHOLE = """
 .right, .live.bench .panel, .side { overflow: visible !important; }
 """
 DRAWN = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+BEGUN = time.monotonic()
 FOREIGN = re.compile(r"\b[A-Za-z][a-z]{3,}\b")
 
 
@@ -181,7 +189,7 @@ def until(window: Any, condition: str, argument: object = None) -> None:
 
 def settle(window: Any) -> None:
     """Wait until nothing is computed any more and all is drawn."""
-    until(window, f"document.querySelector('.bench') && {SETTLED}")
+    until(window, SETTLED)
     window.evaluate(DRAWN)
 
 
@@ -202,19 +210,24 @@ def open_panel(window: Any, name: str) -> None:
     settle(window)
 
 
-def picture(window: Any) -> Image.Image:
-    """The whole panel."""
+def picture(window: Any, where: str) -> Image.Image:
+    """The whole panel, or page."""
     style = window.add_style_tag(content=WHOLE)
     window.evaluate(DRAWN)
-    shown = Image.open(io.BytesIO(window.locator(".card.panel").screenshot())).convert("RGB")
+    shown = Image.open(io.BytesIO(window.locator(where).screenshot())).convert("RGB")
     style.evaluate("one => one.remove()")
     return shown.crop((0, 0, shown.width, min(shown.height, TALLEST)))
 
 
 def look(
-    window: Any, name: str, view: tuple[str, str], found: Findings, arguments: argparse.Namespace
+    window: Any,
+    name: str,
+    view: tuple[str, str],
+    found: Findings,
+    arguments: argparse.Namespace,
+    where: str = "#panel",
 ) -> None:
-    """A panel at all widths."""
+    """A panel, or a page, at all widths."""
     (language, scheme), folder = view, arguments.folder
     for wide in WIDTHS:
         window.set_viewport_size({"width": wide, "height": HEIGHT})
@@ -222,43 +235,73 @@ def look(
         turn = LANGUAGES.index(language) + WIDTHS.index(wide)
         if arguments.square and SCHEMES.index(scheme) != turn % 2:
             continue  # each language at each width, by day or at night
-        said = [*dict.fromkeys(window.evaluate(FITS))]
-        if arguments.audit and wide in AUDITED:
+        said = [*dict.fromkeys(window.evaluate(FITS, where))]
+        if arguments.audit:
             found.audits += 1
-            said += window.evaluate(AUDIT)
+            said += window.evaluate(AUDIT, where)
         for one in said:
             found.wrong[name, one].append(f"{language} {wide} {scheme}")
             print(f"{name}: {one} [{language} {wide} {scheme}]", flush=True)
         if arguments.blind:
             continue
         file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
-        picture(window).save(file)
+        picture(window, ".card.panel" if where == "#panel" else where).save(file)
         found.pictures[name, wide][language, scheme] = file
     if language != "en":
-        text = window.inner_text("#panel")
+        text = window.inner_text(where)
         found.foreign[name] |= set(FOREIGN.findall(text))
 
 
+def look_at_both(
+    window: Any,
+    name: str,
+    language: str,
+    found: Findings,
+    arguments: argparse.Namespace,
+    where: str = "#panel",
+) -> None:
+    """A panel, or a page, by day and at night at all widths."""
+    found.panels += 1
+    for scheme in SCHEMES:
+        window.emulate_media(color_scheme=scheme)
+        settle(window)
+        look(window, name, (language, scheme), found, arguments, where)
+    window.emulate_media(color_scheme=SCHEMES[0])
+    window.set_viewport_size({"width": WIDTHS[-1], "height": HEIGHT})
+    print(f"{time.monotonic() - BEGUN:.0f} s: {name} {language}", flush=True)
+
+
+@contextmanager
+def open_window(
+    running: Any, address: str, language: str, found: Findings, arguments: argparse.Namespace
+) -> Iterator[Any]:
+    """A window of a language at an address, in which axe-core stands ready; what its console says is a finding."""
+    context = running.new_context(viewport={"width": WIDTHS[-1], "height": HEIGHT}, color_scheme=SCHEMES[0])
+    context.add_init_script(f"localStorage.setItem('centrode.language', '{language}')")
+    window = context.new_page()
+    window.set_default_timeout(PATIENCE)
+    said: list[str] = []
+    window.on("console", lambda message: said.append(message.text))
+    window.on("pageerror", lambda error: said.append(str(error)))
+    window.goto(address)
+    if arguments.audit:
+        window.evaluate(AXE.read_text("utf-8"))
+    yield window
+    for message in said:
+        found.wrong[address.partition("#")[0].rpartition("/")[2], message].append(language)
+        print(f"console: {message} [{language}]", flush=True)
+    context.close()
+
+
 def walk(running: Any, address: str, found: Findings, arguments: argparse.Namespace) -> None:
-    """Every panel in a language, by day or at night, window by window."""
+    """Every panel and page in every language, by day and at night, window by window."""
     for language in arguments.languages:
-        for scheme in SCHEMES:
-            seen: set[str] = set()
-            for name in DESCRIPTIONS:
-                context = running.new_context(
-                    viewport={"width": WIDTHS[-1], "height": HEIGHT}, color_scheme=scheme
-                )
-                context.add_init_script(f"localStorage.setItem('centrode.language', '{language}')")
-                window = context.new_page()
-                window.set_default_timeout(PATIENCE)
-                said: list[str] = []
-                window.on("console", lambda message, said=said: said.append(message.text))
-                window.on("pageerror", lambda error, said=said: said.append(str(error)))
-                window.goto(f"{address}#m={packed(description(name))}")
-                until(window, "document.querySelectorAll('[role=tab]:not(.away)').length > 4")
+        seen: set[str] = set()
+        for name in arguments.descriptions:
+            link = f"{address}#m={packed(description(name))}"
+            with open_window(running, link, language, found, arguments) as window:
+                until(window, "document.querySelectorAll('[role=tab]:not(.away)').length > 2")
                 settle(window)
-                if arguments.audit:
-                    window.evaluate(AXE.read_text("utf-8"))
                 for topic in panels(window):
                     again = topic in AGAIN.get(name, ())
                     key = f"{topic}-{name}" if again else topic
@@ -266,12 +309,19 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
                         continue
                     seen.add(topic)
                     open_panel(window, topic)
-                    found.panels += 1
-                    look(window, key, (language, scheme), found, arguments)
-                    window.set_viewport_size({"width": WIDTHS[-1], "height": HEIGHT})
-                for message in said:
-                    found.wrong[name, message].append(f"{language} {scheme}")
-                context.close()
+                    look_at_both(window, key, language, found, arguments)
+        for name, there in PAGES.items():
+            if arguments.topics and name not in arguments.topics:
+                continue
+            where = address.replace("/?", f"/{name}?")
+            with open_window(running, where, language, found, arguments) as window:
+                if name == "synthesis":
+                    window.fill("#targets", POINTS)
+                    window.dispatch_event("#targets", "change")
+                    window.click("#search")
+                window.wait_for_selector(there)
+                settle(window)
+                look_at_both(window, name, language, found, arguments, f"#{name}")
 
 
 def write_sheets(found: Findings, folder: Path) -> Iterator[Path]:
@@ -299,6 +349,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--topics", nargs="+", default=[])
     parser.add_argument("--languages", nargs="+", default=LANGUAGES, choices=LANGUAGES)
+    parser.add_argument("--descriptions", nargs="+", default=DESCRIPTIONS, choices=DESCRIPTIONS)
     parser.add_argument("--audit", action="store_true")
     parser.add_argument("--square", action="store_true")
     parser.add_argument("--blind", action="store_true", help="write no sheets")

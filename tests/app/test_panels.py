@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -51,3 +52,34 @@ def test_options_and_fields_are_named_in_the_language(ask):
             assert option["name"] == other["name"] and option["label"] != other["label"]
     fields = ask("read", text=example_text("indexing-cam"), language="uk")["scene"]["dimensions"]
     assert not {field["name"] for field in fields if field["of"] in ("cam", "follower")} & set(WORDS)
+
+
+@pytest.mark.parametrize(
+    ("name", "topic"), [("six-bar-press", "centres"), ("indexing-cam", "follower-motion")]
+)
+def test_pictures_have_the_edges_of_their_ground_and_commas(ask, name, topic):
+    """At night names are no white spots, and a Russian picture has a decimal comma wherever it has a decimal."""
+    panel = ask("panel", text=example_text(name), topic=topic, samples=37, language="ru")
+    pictures = [block for block in panel["blocks"] if block["kind"] == "picture"]
+    assert pictures
+    for block in pictures:
+        edges = {
+            form: set(
+                re.findall(
+                    r'style="fill: (#\w+); stroke: \1; stroke-width: [\d.]+; stroke-linejoin: round',
+                    block[form],
+                )
+            )
+            for form in ("svg", "dark")
+        }
+        assert edges["svg"] <= {"#ffffff"} and edges["dark"] <= {"#171717"}
+        assert bool(edges["svg"]) == bool(edges["dark"])
+        assert "DejaVuSans-2e" not in block["svg"] + block["dark"]  # the full stop, among outlines of letters
+
+
+def test_what_is_wrong_names_no_option_of_the_command(ask):
+    """A reason reads alike on the page and in the terminal."""
+    text = example_text("six-bar-press")
+    for topic in ("equilibrium", "modes"):
+        panel = ask("panel", text=text, topic=topic, samples=37)
+        assert "--" not in panel.get("missing", "") + panel.get("repair", "")

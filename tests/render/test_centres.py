@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -23,7 +23,7 @@ from centrode.analysis.instant_centres.results import (
 )
 from centrode.animation.animate import animate_centrodes
 from centrode.model.examples import example_text
-from centrode.render.drawing.style import darken
+from centrode.render.drawing.style import darken, house_style
 from centrode.render.drawing.tags import Tag, write_tags
 from centrode.render.figures.pictures import figure_of
 from centrode.sheets.scenes import Scene
@@ -206,3 +206,21 @@ def test_dark_pictures_are_light_on_dark() -> None:
         for effect in text.get_path_effects():  # the edge of letters is of the ground
             edge = to_hex(effect._gc["foreground"])
             assert max(int(edge[k : k + 2], 16) for k in (1, 3, 5)) < 40, text.get_text()
+
+
+def test_areas_and_later_marks_are_dark_pictures_own() -> None:
+    """A tint of the white ground becomes one of the dark ground; marks that a greater size brings are as the others."""
+    with house_style():
+        figure = Figure(figsize=(4.0, 1.0))
+        axes = figure.add_subplot()
+        axes.plot([0.0, 1.0], [0.0, 37.0])
+        area = axes.axhspan(0.0, 20.0, color="#cfe3f2")
+        FigureCanvasAgg(figure).draw()
+        few = len(axes.get_yticks())
+        darken(figure)
+        figure.set_size_inches(4.0, 9.0)
+        FigureCanvasAgg(figure).draw()
+        assert len(axes.get_yticks()) > few
+        assert min(to_rgb(label.get_color())[0] for label in axes.get_yticklabels()) > 0.6
+        assert max(max(to_rgb(line.get_color())) for line in axes.get_ygridlines()) < 0.4
+        assert max(to_rgb(area.get_facecolor())) < 0.5

@@ -137,7 +137,7 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
     display = found.task.display
 
     def words(text: Text) -> str:
-        return render.plain_text(text, display)
+        return render.screen_text(text, display)
 
     facts = [
         ["error", words(Number(answer.error, "m", digits=".3g"))],

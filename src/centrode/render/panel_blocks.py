@@ -49,6 +49,8 @@ MARKS = 2000
 """Events that a slider marks: more than it has places."""
 TIME_DIGITS = 12
 """Significant digits of the instants of events, which may lie close to each other."""
+UNITS = "unit"
+"""Name of the column in which tables have the units of their rows."""
 DIGITS = 7
 """Significant digits of numbers on their way to a page, which shows fewer."""
 
@@ -217,7 +219,8 @@ class _BlockWriter:
         rows = (
             range(count) if count <= ROWS else np.unique(np.linspace(0, count - 1, ROWS).round().astype(int))
         )
-        cells = [self._cells(column, rows) for column in columns]
+        named = any(column.name == UNITS for column in columns)
+        cells = [self._cells(column, rows, named) for column in columns]
         return {
             "kind": "table",
             "title": self.spelling.text(table.caption),
@@ -235,11 +238,15 @@ class _BlockWriter:
             "numeric": column.is_numeric,
         }
 
-    def _cells(self, column: Column, rows: Iterable[int]) -> list[Any]:
+    def _cells(self, column: Column, rows: Iterable[int], units_named: bool) -> list[Any]:
         if not isinstance(column.values, np.ndarray):
             return [self.spelling.text(column.values[row]) for row in rows]
         if column.units:
-            return [self.spelling.text(Number(float(column.values[row]), column.units[row])) for row in rows]
+            shown = [(column.values[row], column.units[row]) for row in rows]
+            return [
+                self.spelling.text(Number(float(value), unit, unit_hidden=units_named))
+                for value, unit in shown
+            ]
         factor = self._shown(column.unit, column.unit_fixed)[0]
         return [_number(float(column.values[row]) * factor) for row in rows]
 
@@ -322,8 +329,8 @@ class _BlockWriter:
         title = getattr(picture, "title", None)
         words = name if title is None else self.spelling.text(title)
         figure = render.figure_of(picture, self.display)
-        light = render.svg_of(figure).decode()
-        dark = render.svg_of(render.darken(figure)).decode()
+        light = render.screen_svg(figure, picture).decode()
+        dark = render.screen_svg(render.darken(figure), picture).decode()
         return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
 
     def arrows(self, arrows: PointArrows) -> JSON:

@@ -256,12 +256,12 @@ REACTIONS = Topic(
             ValueOption(
                 "speed",
                 mark("V"),
-                mark('With --at: speed of the drive in its own sense ("65 rpm"); 0 at rest.'),
+                mark('Speed of the drive at the given instants, in its own sense ("65 rpm"); 0 at rest.'),
             ),
             ValueOption(
                 "acceleration",
                 mark("A"),
-                mark('With --speed: acceleration of the drive in its own sense ("-2.77 rad/s^2").'),
+                mark('Acceleration of the drive at that speed, in its own sense ("-2.77 rad/s^2").'),
             ),
             FlagOption("frictionless", mark("Omit Coulomb friction.")),
             RangeOptions(),
@@ -350,11 +350,13 @@ BALANCE = Topic(
                     'Slider-crank: balance the rotating masses and this fraction of the reciprocating ones ("1/2").'
                 ),
             ),
-            FlagOption("moment", mark("With --full: balance the shaking moment too, by discs.")),
+            FlagOption(
+                "moment", mark("With a shaking force of zero: balance the shaking moment too, by discs.")
+            ),
             ValueOption(
                 "weights",
                 mark("F,M,T"),
-                mark("With --least-maximum: weights of force, moment and drive (1,0,0 by default)."),
+                mark("Weights of force, moment and drive in what is minimised (1,0,0 by default)."),
             ),
             ValueOption(
                 "radius",

@@ -51,7 +51,7 @@ def sheet(results: WalkingWheelResults) -> Sheet:
     variables = [str(name) for name in dataset.data_vars if name != "carrier_angle"]
     title = Title(results.cam.title)
     motion = Section(NOTHING, (WheelPlayer(title, wheel),))
-    positions = Sentence("The walking wheel where its carrier has turned by")
+    positions = Sentence("The walking wheel; above each position stands the angle of its carrier")
     return Sheet(
         heading=heading,
         facts=_facts(results),

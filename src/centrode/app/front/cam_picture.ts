@@ -37,7 +37,7 @@ export function camPicture(cam: CamScene, at: number, wide: number, high: number
   const svg = make("svg", { viewBox: `0 0 ${wide * U} ${high * U}`, class: "drawing cam", role: "img", "aria-label": label });
   const radii = (curve: Place[]): number[] => curve.map(([x, y]) => Math.hypot(x ?? 0, y ?? 0));
   const far = Math.max(1e-9, ...radii(cam.profile), ...radii(cam.pitch ?? [])), box = room(cam, far);
-  const scale = U * Math.min((wide - 2 * MARGIN) / (box.high[0]! - box.low[0]!), (high - 2 * MARGIN) / (box.high[1]! - box.low[1]!));
+  const inner = (side: number): number => Math.max(1, side - 2 * MARGIN), scale = U * Math.min(inner(wide) / (box.high[0]! - box.low[0]!), inner(high) / (box.high[1]! - box.low[1]!));
   const flat = (place: Place): Place => [0, 1].map((k) => (U * (k ? high : wide)) / 2 + (k ? -1 : 1) * scale * (place[k]! - (box.low[k]! + box.high[k]!) / 2));
   const angles = cam.displacement?.angle ?? [0], low = Math.max(0, Math.min(angles.length - 1, Math.floor(at))), share = at - low, first = angles[low] ?? 0;
   const turn = (cam.carrier ? 0 : (cam.follower?.sense ?? 1)) * (first + share * ((angles[low + 1] ?? first) - first));

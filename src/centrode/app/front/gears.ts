@@ -1,5 +1,6 @@
 // The page of gears: two sliders move a pair of wheels within its blocking contour. Whatever is shown the server computes.
 import { refusal, token } from "./token";
+import { typeset } from "./typeset";
 
 type Point = [number, number];
 interface Curve { label: string; blocks: boolean; lines: Point[][] }
@@ -130,13 +131,13 @@ async function begin(): Promise<void> {
     mesh.setAttribute("viewBox", `${-half} ${-got.pitch - half} ${2 * half} ${2 * half}`);
     mesh.replaceChildren(...got.circles.map((one) => draw("path", { class: "circle", d: path(one) })),
       ...got.teeth.map((one) => draw("path", { class: one.wheel ? "tooth wheel" : "tooth", d: path(one.line) })), draw("path", { class: "action", d: path(got.action) }));
-    facts.replaceChildren(...got.facts.map(([label, value]) => make("tr", {}, make("td", { textContent: label }), make("td", { textContent: value }))));
+    facts.replaceChildren(...got.facts.map(([label, value]) => make("tr", {}, make("td", { textContent: label }), make("td", { textContent: typeset(value) }))));
     problems.className = got.works ? "works" : "";
     problems.textContent = got.problems.join(" ");
     text.textContent = got.text;
   };
   const move = async (): Promise<void> => {
-    [first, second].forEach((input, k) => { shown[k]!.textContent = Number(input.value).toFixed(2); });
+    [first, second].forEach((input, k) => { shown[k]!.textContent = typeset(Number(input.value).toLocaleString(language, { minimumFractionDigits: 2 })); });
     place.setAttribute("cx", first.value);
     place.setAttribute("cy", String(-Number(second.value)));
     const got = await line.ask("pair", pair());

@@ -8,6 +8,7 @@ import type { Block, Panel, TopicOption } from "./protocol";
 import { arrows, available, hello, options, panelKey, panels, played, playedPlace, readiness, scene, selection, show, topic, waits } from "./state";
 import { fixed, say, sentence, spelled, typeset } from "./words";
 
+const LEAST_SCALE = 1.16, MOST_SCALE = 1.75; // pixels of a point of paper
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
   const holder = useRef<HTMLDivElement>(null);
@@ -21,6 +22,9 @@ export function Markup({ text, className, label }: { text: string; className: st
     if (picture && label) {
       picture.setAttribute("role", "img");
       picture.setAttribute("aria-label", label);
+      // Its letters are as great as those about it, however wide it is on paper.
+      const points = parseFloat(picture.getAttribute("width") ?? "");
+      if (points) Object.assign(picture.style, { minWidth: `${LEAST_SCALE * points}px`, maxWidth: `${MOST_SCALE * points}px` });
     }
     const element = holder.current!;
     element.replaceChildren(...parsed.body.childNodes);
@@ -69,9 +73,9 @@ function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
       {block.title && <p class="caption">{block.title}</p>}
       <div class={shown.length > LONG ? "table scroll long" : "table scroll"} tabindex={0} role="region" aria-label={block.title || say("table")}>
         <table>
-          <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}>{column.head}{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
+          <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}><Symbols text={column.head} />{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
-            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : typeset(cell ?? "")}</td>)}</tr>)}
+            {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : <Symbols text={typeset(cell ?? "")} />}</td>)}</tr>)}
           </tbody>
         </table>
       </div>
@@ -96,7 +100,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
       return (
         <figure>
           <Markup className={block.dark && dark.value ? "paper dark" : "paper"} text={block.dark && dark.value ? block.dark : block.svg} label={block.alt || block.title || say("picture")} />
-          {block.title && <figcaption>{block.title}</figcaption>}
+          {block.title && <figcaption><Symbols text={block.title} /></figcaption>}
         </figure>
       );
     case "motion":
@@ -119,7 +123,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
       }
       return (
         <figure class="chart">
-          {(block.title || block.y?.label) && <figcaption class="head"><span>{block.title}</span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
+          {(block.title || block.y?.label) && <figcaption class="head"><span><Symbols text={block.title ?? ""} /></span>{block.y?.label && block.y.label !== block.title && <span class="unit"><Symbols text={block.y.label} /></span>}</figcaption>}
           {kept.current.data.map((data) => <ChartView data={data} cursor={follows ? playedPlace.value : null} key={`${follows} ${now?.course !== null}`} />)}
         </figure>
       );

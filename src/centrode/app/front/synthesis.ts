@@ -1,5 +1,6 @@
 // The page of syntheses: a path or poses drawn here, four-bar linkages for it that the server finds, one of them for the workbench.
 import { pack } from "./share";
+import { typeset } from "./typeset";
 
 type Point = [number, number];
 type Target = [number, number, number];
@@ -249,7 +250,7 @@ async function begin(): Promise<void> {
     list.replaceChildren(...found.map((one, k) => {
       const small = draw("svg", { viewBox: box([...one.curve, ...Object.values(one.points)], 0.06).join(" "), "aria-hidden": "true" });
       small.append(...pictured(one));
-      const facts = one.facts.map(([name, value]) => make("span", {}, `${words[name]}: `, make("b", { textContent: value })));
+      const facts = one.facts.map(([name, value]) => make("span", {}, `${words[name]}: `, make("b", { textContent: typeset(value) })));
       const card = make("button", { type: "button", className: "card" });
       card.append(small, make("span", {}, make("b", { textContent: words.answer!.replace("{number}", String(k + 1)) }), ...facts));
       card.addEventListener("click", () => show(k));

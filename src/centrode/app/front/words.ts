@@ -1,5 +1,8 @@
 // Sentences come from the server in the reader's language; numbers are spelled as reports spell them.
 import { signal } from "@preact/signals";
+import { RAISED } from "./typeset";
+
+export { typeset } from "./typeset";
 
 export const words = signal<Record<string, string>>({});
 export const language = signal("en");
@@ -9,8 +12,6 @@ export type Holes = Record<string, string | number>;
 export const fill = (sentence: string, holes: Holes): string =>
   sentence.replace(/\{(\w+)\}/g, (_whole, name: string) => String(holes[name] ?? ""));
 export const say = (key: string, holes: Holes = {}): string => fill(words.value[key] ?? key, holes);
-
-const RAISED: Record<string, string> = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
 const marked = (text: string): string => {
   const [digits = "", power] = text.split("e");
@@ -56,8 +57,3 @@ export const sentence = (text: string | null | undefined): string => {
   return plain && (FORMULA.test(plain) ? plain[0]! : plain[0]!.toLocaleUpperCase()) + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
 };
 export const sentences = (...texts: (string | null | undefined)[]): string => texts.map(sentence).filter(Boolean).join(" ");
-
-// What a terminal spells with the signs of a keyboard, with those of print.
-export const typeset = (text: string): string =>
-  text.replace(/ -> /g, " → ").replace(/(?<![\d.,])0(?:[.,]0+)?e[+-]?\d+\b/g, "0").replace(/(\d)e([+-]?)0*(\d+)\b/g, (_whole, digit: string, sign: string, power: string) => `${digit}·10${[...(sign === "-" ? "-" : "") + power].map((one) => RAISED[one]).join("")}`)
-    .replace(/(?<![\p{L}\d_)\]])-(?=\d)/gu, "−").replace(/(?<=\d) - (?=\d)/g, " − ");

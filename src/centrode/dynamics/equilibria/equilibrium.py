@@ -159,7 +159,7 @@ def equilibrium_results(
     for path, bounds in (vary or {}).items():
         if bounds is None:
             what = _("no range is given")
-            raise InputError(f"--vary {path}", what, _('write "{path}=LOW:HIGH"').format(path=path))
+            raise InputError(f"vary {path}", what, _('write "{path}=LOW:HIGH"').format(path=path))
     found = equilibrium(mechanism, hold=hold, vary=vary or None, progress=progress)
     return results_of_equilibrium(mechanism, found)
 

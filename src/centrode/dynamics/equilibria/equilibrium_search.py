@@ -93,7 +93,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
         what = _("no equilibrium is found from {count} positions")
         raise MotionError(
             "", what.format(count=len(starts) if curve is None else len(curve.places)),
-            _("let springs, weights or friction hold it, or hold a drive: --hold DRIVE=VALUE"),
+            _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)"),
         )  # fmt: skip
     count = len(curve.places) if curve is not None else len(starts)
     return Equilibria(loaded, places, count, curve)

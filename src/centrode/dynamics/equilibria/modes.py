@@ -124,7 +124,7 @@ def _speeds(mechanism: Mechanism, speed: Mapping[str, Value] | None) -> dict[str
         coordinate = drive_coordinate(mechanism, name, "speed")
         found[name] = coordinate.sense * read_quantity(value, coordinate.speed_kind, f"speed {name}")
         if not found[name]:
-            raise InputError(f"speed {name}", _("it is zero"), _("hold the drive: --hold DRIVE=VALUE"))
+            raise InputError(f"speed {name}", _("it is zero"), _("hold the drive (hold: DRIVE=VALUE)"))
     return found
 
 

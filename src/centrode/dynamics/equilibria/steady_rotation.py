@@ -48,7 +48,9 @@ def steady_rotation(loaded: LoadedMechanism) -> SmallMotions:
         return found[0]
     what = _("no motion is found in which all coordinates have constant speeds")
     raise MotionError(
-        "", what, _("hold the drive (--hold) for the modes at rest, or simulate it and look at its regime")
+        "",
+        what,
+        _("hold the drive (hold: DRIVE=VALUE) for the modes at rest, or simulate it and look at its regime"),
     )
 
 

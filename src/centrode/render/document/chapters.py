@@ -16,13 +16,10 @@ from centrode.render.document.cam_player import moving_follower, moving_wheel
 from centrode.render.document.figures import picture
 from centrode.render.document.linkage_player import moving_of
 from centrode.render.document.numbers import Numbers, spelled_number
-from centrode.render.document.scale import INCH, drawn_to_scale, scale_of
+from centrode.render.document.scale import drawn_to_scale, page_end, scale_of
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
 from centrode.render.figures import pictures as figures_pictures
-from centrode.render.pages.force_polygons import drawing_end, group_scales
-from centrode.render.pages.instants import DRAWING as INSTANT
-from centrode.render.pages.positions import DRAWING as POSITIONS
-from centrode.render.pages.several_instants import DRAWING as INSTANTS
+from centrode.render.pages.force_polygons import group_scales
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
@@ -171,15 +168,14 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
                 # cut from its page: the column beside it stands in the text of the chapter
                 name = spelling.text(shown.title if caption is None else caption)
                 name = _with_scales(shown, name) if isinstance(shown, GroupPage) else name
-                return drawn_to_scale(figure, name, *drawing_end(shown))
+                return drawn_to_scale(figure, name, *page_end(shown, figure))
             if isinstance(shown, PositionsPage | InstantPage | InstantsPage | VectorDiagramPage):
                 words = spelling.text(shown.title if caption is None else caption)
                 return _drawn(shown, figure, words, spelling)
             if isinstance(shown, VectorPage):
                 # a page whose scales are true on paper: only what is empty is cut off
-                width, height = (float(inches) * INCH for inches in figure.get_size_inches())
                 title = shown.title if caption is None else caption
-                return drawn_to_scale(figure, spelling.text(title), width, height)
+                return drawn_to_scale(figure, spelling.text(title), *page_end(shown, figure))
             return picture(figure, spelling.text(shown.title if caption is None else caption))
         case Check():
             return _check(block, spelling)
@@ -241,14 +237,7 @@ def _drawn(
     caption = _("{title}; 1 mm of the drawing is {scale} {unit}").format(
         title=title, scale=spelling.numbers.plain(scale), unit=unit
     )
-    return drawn_to_scale(figure, caption, *_drawing_end(page))
-
-
-def _drawing_end(page: PositionsPage | InstantPage | InstantsPage | VectorDiagramPage) -> tuple[float, float]:
-    """Where the drawing of a page ends at its column of text, and at its head [mm]."""
-    if isinstance(page, InstantsPage):
-        return INSTANTS
-    return POSITIONS if isinstance(page, PositionsPage) else INSTANT
+    return drawn_to_scale(figure, caption, *page_end(page, figure))
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.TableBlock:

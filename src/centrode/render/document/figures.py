@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axis import Axis
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
@@ -95,7 +96,10 @@ def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
         for text, effect, name in zip(texts, effects, names, strict=True):
             text.set_path_effects(effect)
             text.set_gid(name)
-    svg = _EDGED.sub(lambda found: _LETTERS.sub(_with_edge, found[0]), stream.getvalue())
+    ground = to_hex(figure.get_facecolor()).encode()
+    svg = _EDGED.sub(
+        lambda found: _LETTERS.sub(lambda letters: _with_edge(letters, ground), found[0]), stream.getvalue()
+    )
     return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded_number, found[0]), svg)
 
 
@@ -125,14 +129,17 @@ def _texts_in(artist: Any) -> Iterator[Any]:
             yield from _texts_in(child)
 
 
-def _with_edge(found: re.Match[bytes]) -> bytes:
-    """Letters behind themselves in white, stroked as wide as the edge is; outlines of letters are finer than places."""
+def _with_edge(found: re.Match[bytes], ground: bytes) -> bytes:
+    """Letters behind themselves in the colour of the ground, stroked as wide as the edge is.
+
+    Outlines of letters are finer than places.
+    """
     transform, letters = found[1], _DEFINITIONS.sub(b"", found[2])
     scale = _SCALE.search(transform)
     width = EDGE / (abs(float(scale[1])) if scale else 1.0)
     fine = b'<use style="stroke-width: %.5g" ' % (width * OUTLINES)
-    edge = b'<g style="fill: #ffffff; stroke: #ffffff; stroke-width: %.5g; stroke-linejoin: round"%b>%b</g>'
-    behind = edge % (width, transform, letters.replace(b"<use ", fine))
+    edge = b'<g style="fill: %b; stroke: %b; stroke-width: %.5g; stroke-linejoin: round"%b>%b</g>'
+    behind = edge % (ground, ground, width, transform, letters.replace(b"<use ", fine))
     return b"".join(_DEFINITIONS.findall(found[2])) + behind + _DEFINITIONS.sub(b"", found[0])
 
 

@@ -1,8 +1,8 @@
-"""Drawings to scale in reports: cut from their pages, so that they keep their size and a millimetre stays one."""
+"""Drawings to scale, cut from their pages: in reports they keep their size, so that a millimetre stays one."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,10 +14,47 @@ from centrode.render.document.figures import svg_of
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.document_canvas import MeasuringCanvas
 from centrode.render.figures.files import spell_decimals
+from centrode.render.pages.force_polygons import drawing_end
+from centrode.render.pages.instants import DRAWING as INSTANT
+from centrode.render.pages.positions import DRAWING as POSITIONS
+from centrode.render.pages.several_instants import DRAWING as INSTANTS
+from centrode.sheets.force_pages import GroupPage, LeverPage
+from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
+from centrode.sheets.pictures import Picture as AnyPicture
+from centrode.sheets.plots import VectorPage
 
+Pages: TypeAlias = (
+    GroupPage | LeverPage | PositionsPage | InstantPage | InstantsPage | VectorDiagramPage | VectorPage
+)
 INCH = 25.4
 ROOM = 2.0
 """What is left about a drawing [mm]."""
+
+
+def page_end(page: Pages, figure: Figure) -> tuple[float, float]:
+    """Where the drawing of a page ends at its column of text, and at its head [mm]."""
+    match page:
+        case GroupPage() | LeverPage():
+            return drawing_end(page)
+        case InstantsPage():
+            return INSTANTS
+        case PositionsPage():
+            return POSITIONS
+        case InstantPage() | VectorDiagramPage():
+            return INSTANT
+        case VectorPage():  # only what is empty is cut off
+            return figure.get_figwidth() * INCH, figure.get_figheight() * INCH
+        case _:
+            assert_never(page)
+
+
+def screen_svg(figure: Figure, picture: AnyPicture) -> bytes:
+    """A figure as SVG for a screen, where its title stands beside it: of a page its drawing, cut from it."""
+    if isinstance(picture, Pages):
+        return drawn_to_scale(figure, "", *page_end(picture, figure)).svg
+    figure.suptitle("").set_in_layout(False)
+    spell_decimals(figure)
+    return svg_of(figure)
 
 
 def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Picture:

@@ -158,12 +158,28 @@ class Decimals(ScalarFormatter):
 Colour = tuple[float, float, float, float]
 DARK_GROUND = 0.09  # lightness of what was white
 LEAST = 0.58  # lightness that a coloured line gets at least
+TINT = 0.8  # lightness of areas that are tints of the ground, at least
 
 
 def darken(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
-    for artist in {id(one): one for one in figure.findobj()}.values():  # some are found twice
+    axes: list[Any] = figure.axes
+    axis = [one for pair in axes for one in (pair.xaxis, pair.yaxis)]
+    # marks that this size of the figure does not need are kept for another one
+    marks = [tick for one in axis for tick in (*one.majorTicks, *one.minorTicks)]
+    artists = [*figure.findobj(), *(part for tick in marks for part in tick.findobj())]
+    for artist in {id(one): one for one in artists}.values():  # some are found twice
         recolour(artist)
+    for one in axis:
+        for which, ticks in (("major", one.majorTicks), ("minor", one.minorTicks)):
+            if ticks:  # marks that are made later are as these are
+                line, label, grid = ticks[0].tick1line, ticks[0].label1, ticks[0].gridline
+                one.set_tick_params(
+                    which=which,
+                    color=line.get_color(),
+                    labelcolor=label.get_color(),
+                    grid_color=grid.get_color(),
+                )
     return figure
 
 
@@ -179,7 +195,7 @@ def recolour(artist: Artist) -> None:
         _recolour_patch(artist)
     elif isinstance(artist, Collection):
         artist.set_edgecolor([_light(colour) for colour in artist.get_edgecolor()])
-        artist.set_facecolor([_light(colour) for colour in artist.get_facecolor()])
+        artist.set_facecolor([_ground(colour) for colour in artist.get_facecolor()])
 
 
 def _recolour_line(line: Line2D) -> None:
@@ -192,8 +208,19 @@ def _recolour_line(line: Line2D) -> None:
 def _recolour_patch(patch: Patch) -> None:
     face, edge = patch.get_facecolor(), patch.get_edgecolor()
     patch.set_alpha(None)  # the colours hold it themselves: an empty face stays empty
-    patch.set_facecolor(_light(face))
+    patch.set_facecolor(_ground(face))
     patch.set_edgecolor(_light(edge))
+
+
+def _ground(colour: Any) -> Any:
+    """The colour of an area: a tint of the white ground becomes one of the dark ground."""
+    if isinstance(colour, str) and colour in ("none", "auto"):
+        return colour
+    red, green, blue, alpha = to_rgba(colour)
+    hue, lightness, saturation = colorsys.rgb_to_hls(red, green, blue)
+    if saturation < 0.05 or lightness < TINT:
+        return _light(colour)
+    return (*colorsys.hls_to_rgb(hue, DARK_GROUND + 1.2 * (1.0 - lightness), saturation), alpha)
 
 
 def _light(colour: Any) -> Any:
