@@ -146,7 +146,7 @@ class AdaptiveSteps:
         scale = self.absolute + np.abs(self.y) * self.relative
 
         def size(vector: Array) -> float:
-            return float(np.linalg.norm(vector / scale)) / len(scale) ** 0.5
+            return float(np.linalg.norm(vector / scale) / len(scale) ** 0.5)
 
         value, rate = size(self.y), size(self._rate)
         trial = 1e-6 if value < 1e-5 or rate < 1e-5 else 0.01 * value / rate
