@@ -14,7 +14,13 @@ FINALISTS = 40
 LAST = 12
 SHARP = 3000.0
 """Weight of constraints at the end."""
+CENTRES, NEIGHBOURS, NEAREST = 3, 60, 30
+"""Best linkages around which others are tried, how many around each at each distance, and how many of them go on."""
+DISTANCES = (0.1, 0.3)
+"""Of neighbours, as the standard deviation of the logarithm of what makes a linkage."""
 Progress = Callable[[float], None]
+Neighbours = Callable[[Lanes, float, int], Lanes]
+"""(linkages, distance, how many of each) -> linkages near them."""
 
 
 def fit_lanes(
@@ -24,10 +30,11 @@ def fit_lanes(
     ordered: bool,
     progress: Progress = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
+    neighbours: Neighbours | None = None,
 ) -> Lanes:
     """Candidates brought to their minima, the best of them to the end, in the order of what they miss.
 
-    Those that break a hinge by more than rounding stand behind all others.
+    Those that break a hinge by more than rounding stand behind all others. Around the best, `neighbours` are tried.
     """
     lanes = least_squares(problem, candidates, 40, 1e-6, stop)
     progress(0.3)
@@ -42,14 +49,47 @@ def fit_lanes(
         lanes = kept.join(rest)
     progress(0.6)
     lanes = least_squares(sharp, _distinct(lanes, FINALISTS), 300, 1e-13, stop)
-    progress(0.8)
+    progress(0.7)
     # Valleys of ever longer links are slow: the best go on alone.
-    lanes = _distinct(lanes, LAST)
-    if ordered and problem.targets.crank is None:
-        lanes = ordered_fit(sharp, lanes, closed, 100, stop)
-    lanes = least_squares(sharp, lanes, 600, 1e-13, stop)
+    lanes = _fit_to_the_end(sharp, _distinct(lanes, LAST), closed, ordered, stop)
+    progress(0.8)
+    if neighbours is not None and not stop():
+        nearby = _fit_neighbours(sharp, _distinct(lanes, CENTRES), closed, ordered, neighbours, stop)
+        lanes = _fit_to_the_end(sharp, _distinct(lanes.join(nearby), LAST), closed, ordered, stop)
     progress(1.0)
     return _distinct(lanes, LAST)
+
+
+def _fit_to_the_end(
+    problem: Problem, lanes: Lanes, closed: bool, ordered: bool, stop: Callable[[], bool]
+) -> Lanes:
+    if ordered and problem.targets.crank is None:
+        lanes = ordered_fit(problem, lanes, closed, 100, stop)
+    return least_squares(problem, lanes, 600, 1e-13, stop)
+
+
+def _fit_neighbours(
+    problem: Problem,
+    lanes: Lanes,
+    closed: bool,
+    ordered: bool,
+    neighbours: Neighbours,
+    stop: Callable[[], bool],
+) -> Lanes:
+    """Minima beside those that were reached.
+
+    Where a path has a sharp turn, each share of its targets on either side of the turn is a minimum of its own, and
+    candidates of an atlas meet one of them by chance (basin hopping: D. J. Wales, J. P. K. Doye, J. Phys. Chem. A 101,
+    1997, 5111-5116).
+    """
+    reached = lanes.take(np.empty(0, dtype=np.int64))
+    for distance in DISTANCES:
+        near = least_squares(problem, neighbours(lanes, distance, NEIGHBOURS), 60, 1e-8, stop)
+        near = _distinct(near, NEAREST)
+        if ordered and problem.targets.crank is None:
+            near = ordered_fit(problem, near, closed, 60, stop)
+        reached = reached.join(near)
+    return reached
 
 
 def _distinct(lanes: Lanes, count: int) -> Lanes:

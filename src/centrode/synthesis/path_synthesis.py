@@ -44,6 +44,7 @@ from centrode.synthesis.least_squares import (
 from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
 from centrode.synthesis.start_candidates import (
     closed_candidates,
+    nearby_candidates,
     open_candidates,
     random_candidates,
     timed_candidates,
@@ -101,7 +102,14 @@ def path_answers(
     problem = _problem(wanted, Targets(scaled, directions, drive), middle, size)
     lanes = _candidates(wanted, problem, closed, wanted.seed)
     examined = len(lanes.side)
-    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop)
+    random = np.random.default_rng([wanted.seed, 1])
+
+    def neighbours(lanes: Lanes, distance: float, count: int) -> Lanes:
+        near = nearby_candidates(problem.targets, lanes, distance, count, random)
+        near.variables = np.clip(near.variables, problem.low, problem.high)
+        return near
+
+    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop, neighbours)
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
         raise _nothing(wanted, nearest_miss, _broken_name(wanted.constraints, lanes, size))
