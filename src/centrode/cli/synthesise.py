@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,6 +19,9 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet
 from centrode.locale import _, mark
+
+MOST_CORES = 8
+"""That a search takes unasked: it has no more shares that are worth a process."""
 
 
 @contextmanager
@@ -40,13 +44,20 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 @click.command(help=mark("Find mechanisms for a path, a function, poses or strokes."))
 @click.argument("wanted", metavar=mark("FILE"))
 @written_option
+@click.option(
+    "--jobs",
+    type=int,
+    metavar=mark("N"),
+    help=mark("Number of parallel processes, by default one for each core; the answers are the same."),
+)
 @tables_options
 @no_figures_option
 @dark_option
-def synthesise(wanted: str, out: Path | None, no_figures: bool, dark: bool) -> None:
+def synthesise(wanted: str, out: Path | None, jobs: int | None, no_figures: bool, dark: bool) -> None:
     """Print the answers, and write them with their pictures where a folder is named."""
     with about(wanted):
         task = library.read_synthesis(wanted)
+    jobs = min(os.cpu_count() or 1, MOST_CORES) if jobs is None else jobs
 
     with Progress() as progress, _interruption() as stopped:
 
@@ -56,11 +67,11 @@ def synthesise(wanted: str, out: Path | None, no_figures: bool, dark: bool) -> N
         names: list[str] = []
         if out is None:
             with about(wanted):
-                sheet = library.sheet_of(library.synthesise(task, say, stopped))
+                sheet = library.sheet_of(library.synthesise(task, say, stopped, jobs))
         else:
             with output.output_folder(out) as draft:
                 with about(wanted):
-                    sheet = library.sheet_of(library.synthesise(task, say, stopped))
+                    sheet = library.sheet_of(library.synthesise(task, say, stopped, jobs))
                 write_sheet(sheet, draft, task.display, progress, figures=not no_figures, dark=dark)
                 render.write_summary(sheet.scalars, draft / "summary.json")
                 names = output.file_names(draft)

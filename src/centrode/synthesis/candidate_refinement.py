@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from centrode.synthesis.least_squares import Lanes, Problem, is_ordered, least_squares, ordered_fit
+from centrode.synthesis.processes import HERE, Processes
 
 SEMIFINALISTS = 96
 FINALISTS = 40
@@ -18,9 +20,55 @@ CENTRES, NEIGHBOURS, NEAREST = 3, 60, 30
 """Best linkages around which others are tried, how many around each at each distance, and how many of them go on."""
 DISTANCES = (0.1, 0.3)
 """Of neighbours, as the standard deviation of the logarithm of what makes a linkage."""
+SHARE = 32
+"""Linkages that are brought to their minima together."""
 Progress = Callable[[float], None]
 Neighbours = Callable[[Lanes, float, int], Lanes]
 """(linkages, distance, how many of each) -> linkages near them."""
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Least squares of lanes, share by share.
+
+    Attributes
+    ----------
+    closed : whether the path is
+    ordered : whether crank angles that nobody gives have to grow from target to target
+    """
+
+    closed: bool
+    ordered: bool
+    stop: Callable[[], bool]
+    processes: Processes
+
+    def squares(self, problem: Problem, lanes: Lanes, iterations: int, tolerance: float) -> Lanes:
+        """Without the order."""
+        work = functools.partial(least_squares, problem, iterations=iterations, tolerance=tolerance)
+        return self._spread(problem, lanes, work)
+
+    def in_order(self, problem: Problem, lanes: Lanes, iterations: int) -> Lanes:
+        """With the order, where it is asked for."""
+        if not self.ordered or problem.targets.crank is not None:
+            return lanes
+        return self._spread(
+            problem, lanes, functools.partial(ordered_fit, problem, closed=self.closed, iterations=iterations)
+        )
+
+    def to_the_end(self, problem: Problem, lanes: Lanes) -> Lanes:
+        """As near as rounding allows, in the order."""
+        return self.squares(problem, self.in_order(problem, lanes, 100), 600, 1e-13)
+
+    def _spread(self, problem: Problem, lanes: Lanes, work: Callable[..., Lanes]) -> Lanes:
+        count = len(lanes.side)
+        shares = [lanes.take(np.arange(k, min(k + SHARE, count))) for k in range(0, count, SHARE)]
+        fitted: dict[int, Lanes] = dict(self.processes.compute(work, shares, self.stop))
+        if len(fitted) < max(len(shares), 1):
+            # stopped: what has not been reached stays where it is
+            fitted = {
+                k: least_squares(problem, share, 0) for k, share in enumerate(shares or [lanes])
+            } | fitted
+        return functools.reduce(Lanes.join, (fitted[k] for k in sorted(fitted)))
 
 
 def fit_lanes(
@@ -31,51 +79,37 @@ def fit_lanes(
     progress: Progress = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
     neighbours: Neighbours | None = None,
+    processes: Processes = HERE,
 ) -> Lanes:
     """Candidates brought to their minima, the best of them to the end, in the order of what they miss.
 
     Those that break a hinge by more than rounding stand behind all others. Around the best, `neighbours` are tried.
     """
-    lanes = least_squares(problem, candidates, 40, 1e-6, stop)
+    fit = _Fit(closed, ordered, stop, processes)
+    lanes = fit.squares(problem, candidates, 40, 1e-6)
     progress(0.3)
-    lanes = least_squares(problem, _distinct(lanes, SEMIFINALISTS), 120, 1e-8, stop)
+    lanes = fit.squares(problem, _distinct(lanes, SEMIFINALISTS), 120, 1e-8)
     progress(0.5)
     sharp = replace(problem, weight=SHARP)
     if ordered and problem.targets.crank is None:
         good = is_ordered(lanes.crank * lanes.sense[:, None], closed)
         kept = _distinct(lanes.take(np.flatnonzero(good)), FINALISTS)
         rest = _distinct(lanes.take(np.flatnonzero(~good)), FINALISTS)
-        rest = ordered_fit(sharp, rest, closed, 40, stop)
-        lanes = kept.join(rest)
+        lanes = kept.join(fit.in_order(sharp, rest, 40))
     progress(0.6)
-    lanes = least_squares(sharp, _distinct(lanes, FINALISTS), 300, 1e-13, stop)
+    lanes = fit.squares(sharp, _distinct(lanes, FINALISTS), 300, 1e-13)
     progress(0.7)
     # Valleys of ever longer links are slow: the best go on alone.
-    lanes = _fit_to_the_end(sharp, _distinct(lanes, LAST), closed, ordered, stop)
+    lanes = fit.to_the_end(sharp, _distinct(lanes, LAST))
     progress(0.8)
     if neighbours is not None and not stop():
-        nearby = _fit_neighbours(sharp, _distinct(lanes, CENTRES), closed, ordered, neighbours, stop)
-        lanes = _fit_to_the_end(sharp, _distinct(lanes.join(nearby), LAST), closed, ordered, stop)
+        nearby = _fit_neighbours(sharp, _distinct(lanes, CENTRES), fit, neighbours)
+        lanes = fit.to_the_end(sharp, _distinct(lanes.join(nearby), LAST))
     progress(1.0)
     return _distinct(lanes, LAST)
 
 
-def _fit_to_the_end(
-    problem: Problem, lanes: Lanes, closed: bool, ordered: bool, stop: Callable[[], bool]
-) -> Lanes:
-    if ordered and problem.targets.crank is None:
-        lanes = ordered_fit(problem, lanes, closed, 100, stop)
-    return least_squares(problem, lanes, 600, 1e-13, stop)
-
-
-def _fit_neighbours(
-    problem: Problem,
-    lanes: Lanes,
-    closed: bool,
-    ordered: bool,
-    neighbours: Neighbours,
-    stop: Callable[[], bool],
-) -> Lanes:
+def _fit_neighbours(problem: Problem, lanes: Lanes, fit: _Fit, neighbours: Neighbours) -> Lanes:
     """Minima beside those that were reached.
 
     Where a path has a sharp turn, each share of its targets on either side of the turn is a minimum of its own, and
@@ -84,11 +118,8 @@ def _fit_neighbours(
     """
     reached = lanes.take(np.empty(0, dtype=np.int64))
     for distance in DISTANCES:
-        near = least_squares(problem, neighbours(lanes, distance, NEIGHBOURS), 60, 1e-8, stop)
-        near = _distinct(near, NEAREST)
-        if ordered and problem.targets.crank is None:
-            near = ordered_fit(problem, near, closed, 60, stop)
-        reached = reached.join(near)
+        near = fit.squares(problem, neighbours(lanes, distance, NEIGHBOURS), 60, 1e-8)
+        reached = reached.join(fit.in_order(problem, _distinct(near, NEAREST), 60))
     return reached
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,7 @@ from centrode.synthesis.least_squares import (
     is_ordered,
     least_squares,
 )
+from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
 from centrode.synthesis.start_candidates import (
     closed_candidates,
@@ -76,7 +77,10 @@ OWN = {"O": (0.0, 0.0), "D": (4.0, 0.0), "lengths": (1.0, 3.5, 3.0)}
 
 
 def path_answers(
-    task: SynthesisTask, progress: Progress = lambda share: None, stop: Callable[[], bool] = lambda: False
+    task: SynthesisTask,
+    progress: Progress = lambda share: None,
+    stop: Callable[[], bool] = lambda: False,
+    processes: Processes = HERE,
 ) -> SynthesisResults:
     """Four-bar linkages for a path, or for poses of the coupler in the least squares sense.
 
@@ -109,7 +113,7 @@ def path_answers(
         near.variables = np.clip(near.variables, problem.low, problem.high)
         return near
 
-    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop, neighbours)
+    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop, neighbours, processes)
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
         raise _nothing(wanted, nearest_miss, _broken_name(wanted.constraints, lanes, size))
@@ -189,12 +193,27 @@ def _bounds(wanted: Synthesis) -> dict[int, tuple[float, float]]:
     return found
 
 
+@dataclass(frozen=True)
+class ConstraintHinges:
+    """Constraints as residuals that are positive where they do not hold.
+
+    Attributes
+    ----------
+    size : of the targets [m], the unit
+    """
+
+    constraints: Constraints
+    size: float
+
+    def __call__(self, variables: Array, side: Array) -> Array:
+        """All of them (lanes, m)."""
+        parts = [part(variables, side) for _name, part in named_hinges(self.constraints, self.size)]
+        return np.concatenate(parts, axis=1)
+
+
 def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
-    """The constraints as residuals that are positive where they do not hold; None where there are none."""
-    parts = [part for _name, part in named_hinges(constraints, size)]
-    if not parts:
-        return None
-    return lambda variables, side: np.concatenate([part(variables, side) for part in parts], axis=1)
+    """The constraints as residuals; None where there are none."""
+    return ConstraintHinges(constraints, size) if named_hinges(constraints, size) else None
 
 
 def named_hinges(constraints: Constraints, size: float) -> list[tuple[str, Hinges]]:

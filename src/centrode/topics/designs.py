@@ -100,6 +100,9 @@ SYNTHESIS = Topic(
     result=Lazily("centrode.synthesis.answers", "SynthesisResults"),
     view=Lazily("centrode.views.synthesis", "sheet"),
     subject="synthesis",
+    document=InDocuments(
+        chapters=(ChapterOfTopic("synthesis", mark("Synthesis of the mechanism")),), instants=False
+    ),
 )
 
 IMPROVEMENT = Topic(
