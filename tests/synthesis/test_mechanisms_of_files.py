@@ -153,7 +153,7 @@ def test_slopes_of_constraints() -> None:
             },
         }
     )  # fmt: skip
-    search = mechanism_synthesis._Search(task)
+    search = mechanism_synthesis._MechanismSearch(task)
     own = np.array(search.moved.own)
     rows, slopes = search.steered_misses(own)
     # beside the targets: width, height, two dyads at all samples, the ratio

@@ -29,7 +29,9 @@ from centrode.synthesis.synthesise import synthesise
 
 WORDS: Mapping[str, str] = {
     "title": mark("Synthesis"),
-    "lead": mark("Draw or write what a point, a link or an output has to do: mechanisms that do it are sought."),
+    "lead": mark(
+        "Draw or write what a point, a link or an output has to do: mechanisms that do it are sought."
+    ),
     "wanted": mark("Wanted"),
     "path": mark("a path of a point"),
     "motion": mark("poses of a link"),
@@ -44,10 +46,12 @@ WORDS: Mapping[str, str] = {
         "comma and the full stop turn it, Enter sets a pose, Backspace removes the last one."
     ),
     "hint_function": mark(
-        "Give y(x) with its range and the angles by which the crank and the rocker turn over it, or write angles of both "
-        "as rows."
+        "Give y(x) with its range and the angles by which the crank and the rocker turn over it, or write angles of "
+        "both as rows."
     ),
-    "hint_strokes": mark("Give the stroke, or the swing of a rocker, and the ratio of the slow to the fast stroke."),
+    "hint_strokes": mark(
+        "Give the stroke, or the swing of a rocker, and the ratio of the slow to the fast stroke."
+    ),
     "drawing": mark("Drawing"),
     "formula": mark("formula of x"),
     "x_from": mark("x from"),
@@ -175,7 +179,9 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
             ["error", words(Number(answer.error, unit, digits=".3g"))],
             ["greatest", words(Number(answer.greatest, unit, digits=".3g"))],
         ]
-    facts += [[name, words(Number(value, its, digits=".4g"))] for name, (value, its) in answer.numbers.items()]
+    facts += [
+        [name, words(Number(value, its, digits=".4g"))] for name, (value, its) in answer.numbers.items()
+    ]
     if math.isfinite(answer.transmission):
         facts.append(["least_transmission", words(Number(answer.transmission, "rad", digits=".3g"))])
     if all(map(math.isfinite, answer.size)):

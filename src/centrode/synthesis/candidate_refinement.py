@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from centrode.synthesis.least_squares import Lanes, Problem, is_ordered, least_squares, ordered_fit
+from centrode.synthesis.least_squares import FitLanes, FitProblem, is_ordered, least_squares, ordered_fit
 from centrode.synthesis.processes import HERE, Processes
 
 SEMIFINALISTS = 96
@@ -23,12 +23,12 @@ DISTANCES = (0.1, 0.3)
 SHARE = 32
 """Linkages that are brought to their minima together."""
 Progress = Callable[[float], None]
-Neighbours = Callable[[Lanes, float, int], Lanes]
+Neighbours = Callable[[FitLanes, float, int], FitLanes]
 """(linkages, distance, how many of each) -> linkages near them."""
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _LaneFits:
     """Least squares of lanes, share by share.
 
     Attributes
@@ -42,12 +42,12 @@ class _Fit:
     stop: Callable[[], bool]
     processes: Processes
 
-    def squares(self, problem: Problem, lanes: Lanes, iterations: int, tolerance: float) -> Lanes:
+    def squares(self, problem: FitProblem, lanes: FitLanes, iterations: int, tolerance: float) -> FitLanes:
         """Without the order."""
         work = functools.partial(least_squares, problem, iterations=iterations, tolerance=tolerance)
         return self._spread(problem, lanes, work)
 
-    def in_order(self, problem: Problem, lanes: Lanes, iterations: int) -> Lanes:
+    def in_order(self, problem: FitProblem, lanes: FitLanes, iterations: int) -> FitLanes:
         """With the order, where it is asked for."""
         if not self.ordered or problem.targets.crank is not None:
             return lanes
@@ -55,37 +55,37 @@ class _Fit:
             problem, lanes, functools.partial(ordered_fit, problem, closed=self.closed, iterations=iterations)
         )
 
-    def to_the_end(self, problem: Problem, lanes: Lanes) -> Lanes:
+    def to_the_end(self, problem: FitProblem, lanes: FitLanes) -> FitLanes:
         """As near as rounding allows, in the order."""
         return self.squares(problem, self.in_order(problem, lanes, 100), 600, 1e-13)
 
-    def _spread(self, problem: Problem, lanes: Lanes, work: Callable[..., Lanes]) -> Lanes:
+    def _spread(self, problem: FitProblem, lanes: FitLanes, work: Callable[..., FitLanes]) -> FitLanes:
         count = len(lanes.side)
         shares = [lanes.take(np.arange(k, min(k + SHARE, count))) for k in range(0, count, SHARE)]
-        fitted: dict[int, Lanes] = dict(self.processes.compute(work, shares, self.stop))
+        fitted: dict[int, FitLanes] = dict(self.processes.compute(work, shares, self.stop))
         if len(fitted) < max(len(shares), 1):
             # stopped: what has not been reached stays where it is
             fitted = {
                 k: least_squares(problem, share, 0) for k, share in enumerate(shares or [lanes])
             } | fitted
-        return functools.reduce(Lanes.join, (fitted[k] for k in sorted(fitted)))
+        return functools.reduce(FitLanes.join, (fitted[k] for k in sorted(fitted)))
 
 
 def fit_lanes(
-    problem: Problem,
-    candidates: Lanes,
+    problem: FitProblem,
+    candidates: FitLanes,
     closed: bool,
     ordered: bool,
     progress: Progress = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
     neighbours: Neighbours | None = None,
     processes: Processes = HERE,
-) -> Lanes:
+) -> FitLanes:
     """Candidates brought to their minima, the best of them to the end, in the order of what they miss.
 
     Those that break a hinge by more than rounding stand behind all others. Around the best, `neighbours` are tried.
     """
-    fit = _Fit(closed, ordered, stop, processes)
+    fit = _LaneFits(closed, ordered, stop, processes)
     lanes = fit.squares(problem, candidates, 40, 1e-6)
     progress(0.3)
     lanes = fit.squares(problem, _distinct(lanes, SEMIFINALISTS), 120, 1e-8)
@@ -109,7 +109,7 @@ def fit_lanes(
     return _distinct(lanes, LAST)
 
 
-def _fit_neighbours(problem: Problem, lanes: Lanes, fit: _Fit, neighbours: Neighbours) -> Lanes:
+def _fit_neighbours(problem: FitProblem, lanes: FitLanes, fit: _LaneFits, neighbours: Neighbours) -> FitLanes:
     """Minima beside those that were reached.
 
     Where a path has a sharp turn, each share of its targets on either side of the turn is a minimum of its own, and
@@ -123,7 +123,7 @@ def _fit_neighbours(problem: Problem, lanes: Lanes, fit: _Fit, neighbours: Neigh
     return reached
 
 
-def _distinct(lanes: Lanes, count: int) -> Lanes:
+def _distinct(lanes: FitLanes, count: int) -> FitLanes:
     """The best lanes, without those that miss the targets by the same and have the same lengths."""
     chosen: list[int] = []
     for k in _best(lanes).tolist():
@@ -141,7 +141,7 @@ def _distinct(lanes: Lanes, count: int) -> Lanes:
     return lanes.take(np.array(chosen, dtype=np.int64))
 
 
-def _best(lanes: Lanes) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
+def _best(lanes: FitLanes) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
     broken = lanes.violation > 1e-3
     order: np.ndarray[tuple[int, ...], np.dtype[np.int64]] = np.lexsort((lanes.errors, broken))
     return order

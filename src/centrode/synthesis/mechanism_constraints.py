@@ -54,7 +54,7 @@ def mechanism_constraints(mechanism: Mechanism, constraints: Constraints) -> Mec
     outputs: dict[str, str] = {}
     parts: list[Callable[[Solver, Numbers, Numbers], tuple[Array, Array]]] = []
     if constraints.size is not None:
-        box = _Box(tuple(_points(mechanism)), constraints.size)
+        box = _BoxLimit(tuple(_points(mechanism)), constraints.size)
         outputs |= {f"box_{p}_{axis}": f"position_{p}_{axis}" for p in box.points for axis in "xy"}
         parts.append(box.misses)
     if constraints.transmission is not None:
@@ -62,13 +62,13 @@ def mechanism_constraints(mechanism: Mechanism, constraints: Constraints) -> Mec
         if not dyads:
             what = _("no group of the mechanism has a transmission angle")
             raise InputError("[synthesis.constraints] transmission", what, _("remove it"))
-        parts.append(_Transmission(tuple(dyads), constraints.transmission).misses)
+        parts.append(_TransmissionLimit(tuple(dyads), constraints.transmission).misses)
     if constraints.length_ratio is not None:
         ends = link_ends(mechanism)
         outputs |= {
             f"box_{p}_{axis}": f"position_{p}_{axis}" for two in ends.values() for p in two for axis in "xy"
         }
-        parts.append(_Lengths(tuple(ends.values()), math.log(constraints.length_ratio)).misses)
+        parts.append(_LengthLimit(tuple(ends.values()), math.log(constraints.length_ratio)).misses)
 
     def misses(moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array]:
         rows = [part(moved, values, by) for part in parts]
@@ -99,7 +99,7 @@ def _points(mechanism: Mechanism) -> list[str]:
 
 
 @dataclass(frozen=True)
-class _Box:
+class _BoxLimit:
     """Width and height of the box around all positions: what they exceed in shares of what is allowed."""
 
     points: tuple[str, ...]
@@ -119,7 +119,7 @@ class _Box:
 
 
 @dataclass(frozen=True)
-class _Lengths:
+class _LengthLimit:
     """The logarithm of the longest to the shortest link, less what is allowed."""
 
     ends: tuple[tuple[str, str], ...]
@@ -144,7 +144,7 @@ class _Lengths:
 
 
 @dataclass(frozen=True)
-class _Transmission:
+class _TransmissionLimit:
     """How far the angle of each dyad's two lines falls short at every sample, as cosines."""
 
     dyads: tuple[tuple[Line, Line], ...]
@@ -180,11 +180,11 @@ def _dyads(mechanism: Mechanism, outputs: dict[str, str]) -> Iterator[tuple[Line
     def guide(on: str, name: str) -> Line:
         if on != FRAME:
             outputs[f"line_{on}"] = f"angle_{on}"
-        return _GuideLine(along[name], "" if on == FRAME else f"line_{on}")
+        return _RailLine(along[name], "" if on == FRAME else f"line_{on}")
 
     def arm(centre: str, point: str, turn: complex) -> Line:
         outputs.update({f"line_{p}_{axis}": f"position_{p}_{axis}" for p in (centre, point) for axis in "xy"})
-        return _Arm(centre, point, turn)
+        return _ArmLine(centre, point, turn)
 
     for group in prepared.structure.groups:
         if isinstance(group, Aim) and group.contact is None:
@@ -203,7 +203,7 @@ def _dyads(mechanism: Mechanism, outputs: dict[str, str]) -> Iterator[tuple[Line
 
 
 @dataclass(frozen=True)
-class _Arm:
+class _ArmLine:
     """From one point to another, turned by a factor of unit size."""
 
     end: str
@@ -221,7 +221,7 @@ class _Arm:
 
 
 @dataclass(frozen=True)
-class _GuideLine:
+class _RailLine:
     """A guide's direction: as it is on the frame, or turned with the link that carries it."""
 
     along: complex

@@ -45,7 +45,7 @@ KEPT = 1e-6
 Progress: TypeAlias = Callable[[float], None]
 
 
-class _Open(Exception):
+class _BrokenMotion(Exception):
     """The mechanism does not move all along."""
 
 
@@ -65,7 +65,7 @@ class _Wanted:
     misses: Callable[[Solver, Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]
 
 
-class _Search:
+class _MechanismSearch:
     """What is wanted of a mechanism of a file, made into misses; another process makes its own from the request."""
 
     def __init__(self, task: SynthesisTask) -> None:
@@ -85,14 +85,14 @@ class _Search:
         self.whole = solver(mechanism, self.names, SAMPLES, outputs=kept) if at is not None and kept else None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _Search, (self.task,)
+        return _MechanismSearch, (self.task,)
 
     def misses(self, values: Array) -> tuple[Array, Array, Array]:
-        """Misses of the targets alone, their derivatives, values of the drive at the targets; raises _Open."""
+        """Misses of the targets alone, their derivatives, values of the drive at the targets; raises _BrokenMotion."""
         return self.goal.misses(self.moved, *_numbers(self.moved, values))
 
     def steered_misses(self, values: Array) -> tuple[Array, Array]:
-        """Misses of the targets, then of the constraints, with their derivatives; raises _Open."""
+        """Misses of the targets, then of the constraints, with their derivatives; raises _BrokenMotion."""
         numbers, slopes = _numbers(self.moved, values)
         missed, by, _drive = self.goal.misses(self.moved, numbers, slopes)
         if self.whole is not None:
@@ -108,7 +108,7 @@ class _Search:
             missed, _by, _drive = self.goal.misses(self.moved, numbers, none)
             if self.whole is not None:
                 numbers, none = _without_slopes(self.whole, values)
-        except (_Open, ZeroDivisionError):
+        except (_BrokenMotion, ZeroDivisionError):
             return math.inf
         exceeded, _slopes = self.kept.misses(self.whole or self.moved, numbers, none)
         cost = float((missed**2).sum() + self.goal.size**2 * (exceeded**2).sum())
@@ -116,18 +116,18 @@ class _Search:
 
 
 def _numbers(moved: Solver, values: Array) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
-    """Outputs and their derivatives; raises _Open."""
+    """Outputs and their derivatives; raises _BrokenMotion."""
     numbers, slopes = np.asarray(moved.outputs(values)), moved.gradient(values)
     if not (np.isfinite(numbers).all() and np.isfinite(slopes).all()):
-        raise _Open
+        raise _BrokenMotion
     return moved.split(numbers), moved.split(slopes)
 
 
 def _without_slopes(moved: Solver, values: Array) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
-    """Outputs, and zeros in place of their derivatives, which take most of the time; raises _Open."""
+    """Outputs, and zeros in place of their derivatives, which take most of the time; raises _BrokenMotion."""
     numbers = np.asarray(moved.outputs(values))
     if not np.isfinite(numbers).all():
-        raise _Open
+        raise _BrokenMotion
     return moved.split(numbers), moved.split(np.zeros((*numbers.shape, len(values))))
 
 
@@ -147,7 +147,7 @@ def mechanism_answers(
         Nothing between the bounds moves all along, or keeps what is required.
     """
     wanted = task.synthesis
-    search = _Search(task)
+    search = _MechanismSearch(task)
     starts = _starts(search, wanted.seed, stop)
     if not starts:
         what = _("no mechanism between the bounds moves all along")
@@ -175,7 +175,7 @@ def mechanism_answers(
 
 
 def _distinct_answers(
-    search: _Search, found: Sequence[tuple[float, Array]]
+    search: _MechanismSearch, found: Sequence[tuple[float, Array]]
 ) -> tuple[tuple[Answer, ...], list[str]]:
     """Different answers that keep everything, the best first, and what others break."""
     answers: list[Answer] = []
@@ -418,7 +418,7 @@ def _stroke_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
         for measure, value, size in goals:
             number, slope = measure.compute(moved.parameter, moved.time, values, by)
             if not math.isfinite(number):
-                raise _Open
+                raise _BrokenMotion
             missed.append(np.array([(number - value) / size]))
             slopes.append(slope[None] / size)
         if dwell is not None:
@@ -436,7 +436,7 @@ def _stroke_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
     return _Wanted(outputs, None, 1.0, misses)
 
 
-def _starts(search: _Search, seed: int, stop: Callable[[], bool]) -> list[Array]:
+def _starts(search: _MechanismSearch, seed: int, stop: Callable[[], bool]) -> list[Array]:
     """Values between the bounds with which the mechanism moves, the best first; the own ones where they lie there."""
     random = np.random.default_rng(seed)
     drawn = [*random.uniform(search.low, search.high, (STARTS, len(search.low)))]
@@ -452,7 +452,7 @@ def _starts(search: _Search, seed: int, stop: Callable[[], bool]) -> list[Array]
 
 
 def _refine_share(
-    search: _Search, starts: Sequence[Array], stop: Callable[[], bool] = lambda: False
+    search: _MechanismSearch, starts: Sequence[Array], stop: Callable[[], bool] = lambda: False
 ) -> list[tuple[float, Array]]:
     """The minima next to some starts; the first is refined in any case."""
     found: list[tuple[float, Array]] = []
@@ -463,21 +463,21 @@ def _refine_share(
     return found
 
 
-def _refine(search: _Search, start: Array) -> tuple[float, Array]:
+def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
     """The next minimum from a start, in units of the ranges; a step to where nothing moves is taken back."""
     low, width = search.low, search.high - search.low
     best = start
     least = math.inf
     try:
         count = len(search.steered_misses(start)[0])
-    except _Open:
+    except _BrokenMotion:
         return math.inf, start
 
     def rows(place: Array) -> Array:
         nonlocal best, least
         try:
             missed = search.steered_misses(low + width * place)[0]
-        except _Open:
+        except _BrokenMotion:
             return np.full(count, 1e3 * (1 + math.sqrt(least) if math.isfinite(least) else 1e3))
         cost = float((missed**2).sum())
         if cost < least:
@@ -487,7 +487,7 @@ def _refine(search: _Search, start: Array) -> tuple[float, Array]:
     def slopes(place: Array) -> Array:
         try:
             by: Array = search.steered_misses(low + width * place)[1] * width
-        except _Open:
+        except _BrokenMotion:
             return np.zeros((count, len(place)))
         return by
 
@@ -496,7 +496,7 @@ def _refine(search: _Search, start: Array) -> tuple[float, Array]:
     return least, best
 
 
-def _answer(search: _Search, values: Array) -> tuple[Answer | None, str]:
+def _answer(search: _MechanismSearch, values: Array) -> tuple[Answer | None, str]:
     """The answer of these values, or what it breaks."""
     wanted = search.task.synthesis
     missed, _by, drive = search.misses(values)
