@@ -169,32 +169,25 @@ def test_slopes_of_constraints() -> None:
         assert np.abs(difference - slopes[:, k])[6:][there[6:]].max() < 1e-6 * max(1.0, np.abs(slopes).max())
 
 
-@pytest.mark.parametrize("name", ["size", "transmission", "length_ratio"])
+@pytest.mark.parametrize("name", ["size", "transmission"])
 def test_constraints_steer(published, name: str) -> None:
-    """What the published linkage breaks is kept by a linkage between the bounds, by a motion of one's own."""
+    """What the published linkage breaks (5.90 m high, 23.1 deg) is kept, by motions and angles of one's own."""
     places = published.position.sel(point="P").to_numpy()[2:70:9]
     rows = [[float(x), float(y)] for x, y in places]
-    limit = {"size": [12.2, 5.0], "transmission": "35 deg", "length_ratio": 4.2}[name]
+    limit = {"size": [14.0, 5.7], "transmission": "25 deg"}[name]
     found = synthesise(kind="path", point="P", targets=rows, constraints={name: limit}, answers=2)
     for answer in found.answers:
         moved = ct.motion(answer.mechanism, 1441).position
         at = {p: moved.sel(point=p).to_numpy() @ [1, 1j] for p in moved.point.to_numpy()}
         if name == "size":
             everything = np.concatenate(list(at.values()))
-            assert np.ptp(everything.real) <= 12.2 * (1 + 1e-4) and np.ptp(everything.imag) <= 5.0 * (
-                1 + 1e-4
-            )
-        elif name == "transmission":
-            pairs = (("A", "B", "D"),)
-            least = min(
-                float(np.abs(np.angle((at[one] - at[b]) / (at[other] - at[b]))).min())
-                for one, b, other in pairs
-            )
-            assert least >= math.radians(35) - 1e-5
-            assert answer.transmission >= math.radians(35) - 1e-6
+            # between its own 181 samples the search sees the box to some hundred thousandths
+            assert np.ptp(everything.real) <= 14.0
+            assert np.ptp(everything.imag) <= 5.7 * (1 + 1e-4)
         else:
-            lengths = [1.0, abs(at["B"][0] - at["A"][0]), abs(at["D"][0] - at["B"][0]), 3.0]
-            assert max(lengths) / min(lengths) <= 4.2 * (1 + 1e-6)
+            least = float(np.abs(np.angle((at["A"] - at["B"]) / (at["D"] - at["B"]))).min())
+            assert least >= math.radians(25) - 1e-5
+            assert answer.transmission == pytest.approx(least, abs=1e-4)
         assert answer.defects.none
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,9 +18,6 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet
 from centrode.locale import _, mark
-
-MOST_CORES = 8
-"""That a search takes unasked: it has no more shares that are worth a process."""
 
 
 @contextmanager
@@ -47,17 +43,17 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 @click.option(
     "--jobs",
     type=int,
+    default=1,
     metavar=mark("N"),
-    help=mark("Number of parallel processes, by default one for each core; the answers are the same."),
+    help=mark("Number of parallel processes."),
 )
 @tables_options
 @no_figures_option
 @dark_option
-def synthesise(wanted: str, out: Path | None, jobs: int | None, no_figures: bool, dark: bool) -> None:
+def synthesise(wanted: str, out: Path | None, jobs: int, no_figures: bool, dark: bool) -> None:
     """Print the answers, and write them with their pictures where a folder is named."""
     with about(wanted):
         task = library.read_synthesis(wanted)
-    jobs = min(os.cpu_count() or 1, MOST_CORES) if jobs is None else jobs
 
     with Progress() as progress, _interruption() as stopped:
 

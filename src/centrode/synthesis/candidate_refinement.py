@@ -16,11 +16,11 @@ FINALISTS = 40
 LAST = 12
 SHARP = 3000.0
 """Weight of constraints at the end."""
-CENTRES, NEIGHBOURS, NEAREST = 3, 60, 30
+CENTRES, NEIGHBOURS, NEAREST, LAST_NEAR = 3, 40, 16, 6
 """Best linkages around which others are tried, how many around each at each distance, and how many of them go on."""
 DISTANCES = (0.1, 0.3)
 """Of neighbours, as the standard deviation of the logarithm of what makes a linkage."""
-SHARE = 32
+SHARE = 64
 """Linkages that are brought to their minima together."""
 Progress = Callable[[float], None]
 Neighbours = Callable[[FitLanes, float, int], FitLanes]
@@ -104,9 +104,10 @@ def fit_lanes(
     progress(0.8)
     if neighbours is not None and not stop():
         nearby = _fit_neighbours(sharp, _distinct(lanes, CENTRES), fit, neighbours)
-        lanes = fit.to_the_end(sharp, _distinct(lanes.join(nearby), LAST))
+        # beside the others: they must not crowd out what is different
+        lanes = lanes.join(fit.to_the_end(sharp, _distinct(nearby, LAST_NEAR)))
     progress(1.0)
-    return _distinct(lanes, LAST)
+    return _distinct(lanes, LAST + LAST_NEAR)
 
 
 def _fit_neighbours(problem: FitProblem, lanes: FitLanes, fit: _LaneFits, neighbours: Neighbours) -> FitLanes:

@@ -20,15 +20,15 @@ from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import two_points
 from centrode.structure.groups import Aim, Meet, Rail, Rod, Slot
 from centrode.sweeps.solver import Solver
-from centrode.synthesis.four_bars import Array
+from centrode.synthesis.four_bars import Array, Complex
 from centrode.synthesis.requests import Constraints
 
-WEIGHT = 30.0
-"""Of a constraint that is exceeded by its own size against a target that is missed by the size of the path."""
-MARGIN = 1e-6
-"""Share by which a box and a transmission angle are kept, so that rounding does not break them."""
+MARGIN = 1e-5
+"""Share by which a limit is kept, so that what a weight leaves does not break it."""
+BOX_MARGIN = 2e-5
+"""Of a box: what parabolas between samples leave is smaller."""
 Numbers: TypeAlias = Mapping[str, Array]
-Line: TypeAlias = Callable[[Numbers, Numbers], tuple[Array, Array]]
+Line: TypeAlias = Callable[[Numbers, Numbers], tuple[Complex, Complex]]
 """(outputs, their derivatives) -> complex directions (samples,) and derivatives (samples, free)."""
 
 
@@ -74,7 +74,7 @@ def mechanism_constraints(mechanism: Mechanism, constraints: Constraints) -> Mec
         rows = [part(moved, values, by) for part in parts]
         missed = np.concatenate([row for row, _slopes in rows] or [np.empty(0)])
         slopes = np.concatenate([slope for _row, slope in rows] or [np.empty((0, len(moved.free)))])
-        return WEIGHT * missed, WEIGHT * slopes
+        return missed, slopes
 
     return MechanismConstraints(outputs, misses)
 
@@ -109,13 +109,31 @@ class _BoxLimit:
         """Two misses (2,) with derivatives (2, free): those of the two points that stand out farthest."""
         rows, slopes = np.zeros(2), np.zeros((2, len(moved.free)))
         for k, axis in enumerate("xy"):
-            places = np.concatenate([values[f"box_{p}_{axis}"] for p in self.points])
-            changes = np.concatenate([by[f"box_{p}_{axis}"] for p in self.points])
-            most, least = int(np.argmax(places)), int(np.argmin(places))
-            excess = (places[most] - places[least]) / self.size[k] - 1.0 + MARGIN
+            ends = [_greatest(sign, values, by, [f"box_{p}_{axis}" for p in self.points]) for sign in (1, -1)]
+            excess = (ends[0][0] + ends[1][0]) / self.size[k] - 1.0 + BOX_MARGIN
             if excess > 0:
-                rows[k], slopes[k] = excess, (changes[most] - changes[least]) / self.size[k]
+                rows[k], slopes[k] = excess, (ends[0][1] + ends[1][1]) / self.size[k]
         return rows, slopes
+
+
+def _greatest(sign: int, values: Numbers, by: Numbers, names: Sequence[str]) -> tuple[float, Array]:
+    """Greatest of outputs times a sign, with its derivatives (free,): between samples that of the parabola there."""
+    name = max(names, key=lambda one: float((sign * values[one]).max()))
+    places = sign * values[name]
+    k = int(np.argmax(places))
+    if not 0 < k < len(places) - 1:
+        return float(places[k]), sign * by[name][k]
+    return _summit(places, sign * by[name], k)
+
+
+def _summit(places: Array, changes: Array, k: int) -> tuple[float, Array]:
+    """Top of the parabola through three samples about a greatest one, with its derivatives."""
+    before, here, after = places[k - 1 : k + 2]
+    bend = max(2 * here - before - after, 1e-300)
+    part = float(np.clip((after - before) / (2 * bend), -0.5, 0.5))
+    weights = np.array([part * (part - 1) / 2, 1 - part**2, part * (part + 1) / 2])
+    # where it is greatest its place does not change it
+    return float(weights @ places[k - 1 : k + 2]), weights @ changes[k - 1 : k + 2]
 
 
 @dataclass(frozen=True)
@@ -160,9 +178,13 @@ class _TransmissionLimit:
             # the cosine of turned/|turned| changes with its angle only
             angle = np.angle(turned)
             angle_by = (change / turned[:, None]).imag
-            excess = np.abs(np.cos(angle)) - math.cos(self.least) + MARGIN
-            over = excess > 0
+            cosine = np.abs(np.cos(angle))
             slope = -(np.sign(np.cos(angle)) * np.sin(angle))[:, None] * angle_by
+            samples, changes = cosine.copy(), slope.copy()
+            for k in np.flatnonzero((cosine[1:-1] >= cosine[:-2]) & (cosine[1:-1] >= cosine[2:])) + 1:
+                cosine[k], slope[k] = _summit(samples, changes, int(k))
+            excess = cosine - math.cos(self.least) + MARGIN
+            over = excess > 0
             rows.append(np.where(over, excess, 0.0) / math.sqrt(len(excess)))
             slopes.append(np.where(over[:, None], slope, 0.0) / math.sqrt(len(excess)))
         return np.concatenate(rows), np.concatenate(slopes)
@@ -210,7 +232,7 @@ class _ArmLine:
     start: str
     turn: complex
 
-    def __call__(self, values: Numbers, by: Numbers) -> tuple[Array, Array]:
+    def __call__(self, values: Numbers, by: Numbers) -> tuple[Complex, Complex]:
         """Complex directions and their derivatives."""
         ends = [
             numbers[f"line_{point}_x"] + 1j * numbers[f"line_{point}_y"]
@@ -227,7 +249,7 @@ class _RailLine:
     along: complex
     angle: str
 
-    def __call__(self, values: Numbers, by: Numbers) -> tuple[Array, Array]:
+    def __call__(self, values: Numbers, by: Numbers) -> tuple[Complex, Complex]:
         """Complex directions and their derivatives."""
         if not self.angle:
             sample = next(iter(values))

@@ -39,6 +39,9 @@ STARTS = 400
 REFINED = 24
 """The best of them go on."""
 SAMPLES = 181
+SOFT, SHARP = 30.0, 1e4
+"""Weights, at first and at the end, of a constraint that is exceeded by its own size against a target that is missed by
+the size of the path: what is left of it falls with the square."""
 SHARE = 3
 """Starts that one process refines after the other."""
 KEPT = 1e-6
@@ -91,14 +94,14 @@ class _MechanismSearch:
         """Misses of the targets alone, their derivatives, values of the drive at the targets; raises _BrokenMotion."""
         return self.goal.misses(self.moved, *_numbers(self.moved, values))
 
-    def steered_misses(self, values: Array) -> tuple[Array, Array]:
+    def steered_misses(self, values: Array, weight: float = SOFT) -> tuple[Array, Array]:
         """Misses of the targets, then of the constraints, with their derivatives; raises _BrokenMotion."""
         numbers, slopes = _numbers(self.moved, values)
         missed, by, _drive = self.goal.misses(self.moved, numbers, slopes)
         if self.whole is not None:
             numbers, slopes = _numbers(self.whole, values)
         exceeded, exceeded_by = self.kept.misses(self.whole or self.moved, numbers, slopes)
-        size = self.goal.size
+        size = weight * self.goal.size
         return np.concatenate([missed, size * exceeded]), np.concatenate([by, size * exceeded_by])
 
     def cost(self, values: Array) -> float:
@@ -111,7 +114,7 @@ class _MechanismSearch:
         except (_BrokenMotion, ZeroDivisionError):
             return math.inf
         exceeded, _slopes = self.kept.misses(self.whole or self.moved, numbers, none)
-        cost = float((missed**2).sum() + self.goal.size**2 * (exceeded**2).sum())
+        cost = float((missed**2).sum() + (SOFT * self.goal.size) ** 2 * (exceeded**2).sum())
         return cost if math.isfinite(cost) else math.inf
 
 
@@ -213,7 +216,7 @@ def _narrow_pivots(
                 if not low[own] < high[own]:
                     what = _("no fixed hinge lies both in pivots and in its own range")
                     raise InputError(where, what, _("widen one of them"))
-            elif not box[0] <= at[k] <= box[1]:
+            elif isinstance(at, tuple) and not box[0] <= at[k] <= box[1]:
                 what = _("the fixed point {name} stands outside, and is not free")
                 repair = _("widen it, or free {path}").format(path=path)
                 raise InputError(where, what.format(name=value_text(name)), repair)
@@ -464,19 +467,27 @@ def _refine_share(
 
 
 def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
+    """The next minimum from a start; where constraints press against it, as sharply as they are checked."""
+    cost, values = _descend(search, start, SOFT)
+    if math.isfinite(cost) and search.kept.outputs:
+        return _descend(search, values, SHARP)
+    return cost, values
+
+
+def _descend(search: _MechanismSearch, start: Array, weight: float) -> tuple[float, Array]:
     """The next minimum from a start, in units of the ranges; a step to where nothing moves is taken back."""
     low, width = search.low, search.high - search.low
     best = start
     least = math.inf
     try:
-        count = len(search.steered_misses(start)[0])
+        count = len(search.steered_misses(start, weight)[0])
     except _BrokenMotion:
         return math.inf, start
 
     def rows(place: Array) -> Array:
         nonlocal best, least
         try:
-            missed = search.steered_misses(low + width * place)[0]
+            missed = search.steered_misses(low + width * place, weight)[0]
         except _BrokenMotion:
             return np.full(count, 1e3 * (1 + math.sqrt(least) if math.isfinite(least) else 1e3))
         cost = float((missed**2).sum())
@@ -486,7 +497,7 @@ def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
 
     def slopes(place: Array) -> Array:
         try:
-            by: Array = search.steered_misses(low + width * place)[1] * width
+            by: Array = search.steered_misses(low + width * place, weight)[1] * width
         except _BrokenMotion:
             return np.zeros((count, len(place)))
         return by

@@ -361,7 +361,7 @@ def _answers(
         broken = lanes.violation[k] > MET
         unordered = constraints.order and not is_ordered((crank * sense)[None], closed)[0]
         miss = min(miss, float(np.sqrt(np.mean(errors**2))))
-        if broken or unordered:
+        if broken or unordered or any(_draws_alike(linkage, side, errors, one, size) for one in found):
             continue
         answer = four_bar_answer(task, linkage, side, crank, sense, errors, closed, numbers, further)
         if constraints.order and not answer.defects.none:
@@ -385,6 +385,18 @@ def direction_point(linkage: Array, attachment: float) -> Mapping[str, list[floa
             float(linkage[PY] + arm * np.sin(attachment)),
         ]
     }
+
+
+def _draws_alike(linkage: Array, side: float, errors: Array, other: Answer, size: float) -> bool:
+    """Whether a linkage whose crank turns fully draws the curve of an answer; it need not be proved then."""
+    error = float(np.sqrt(np.mean(errors**2)))
+    if abs(error - other.error) > 1e-3 * other.error + 1e-9 * size or not len(other.curve):
+        return False
+    if not (crank_margins(linkage[None]) > 0).all():
+        return False
+    turn = np.linspace(0.0, 2 * np.pi, 61)
+    curve = coupler_motion(linkage[None], turn, np.array([side])).point[0]
+    return bool(np.abs(curve[:, None] - other.curve[None]).min(axis=1).max() < 2e-2 * size)
 
 
 def _alike(answer: Answer, other: Answer, size: float) -> bool:
