@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from centrode.sheets.sheet import (
@@ -15,7 +16,7 @@ from centrode.sheets.sheet import (
     Section,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Sentence, Text
+from centrode.sheets.texts import NOTHING, Number, Sentence, Text
 from centrode.views.linkage_data import data_chapter
 
 if TYPE_CHECKING:
@@ -64,14 +65,16 @@ def synthesis_chapter(
     """
     on_file = results.task.mechanism is not None
     way = OF_A_FILE if on_file else WAYS[results.task.synthesis.kind]
-    found: list[Block] = [answers]
+    numbers = tuple(Number(k, digits="d") for k in range(1, len(results.answers) + 1))
+    numbered = replace(answers.columns[0], values=numbers, whole=False)
+    found: list[Block] = [replace(answers, columns=(numbered, *answers.columns[1:]))]
     found += [Illustration(name) for name in ("answers", "errors", "curves") if name in pictures]
     found += [Paragraph(note, clause=True) for note in notes]
     return Chapter(
         Sentence("Synthesis of the mechanism"),
         (
             Section(NOTHING, (FactTable(tuple(facts), Sentence("What is wanted and found")),)),
-            Section(Sentence("Search"), (Paragraph(way), Paragraph(PROVED))),
+            Section(Sentence("How the mechanisms were sought"), (Paragraph(way), Paragraph(PROVED))),
             Section(Sentence("Answers"), tuple(found)),
             *_constructed(construction, pictures),
             Section(Sentence("The best answer"), data_chapter(results.mechanism).sections[0].blocks),
