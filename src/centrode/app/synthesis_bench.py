@@ -185,7 +185,14 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
     if math.isfinite(answer.transmission):
         facts.append(["least_transmission", words(Number(answer.transmission, "rad", digits=".3g"))])
     if all(map(math.isfinite, answer.size)):
-        facts.append(["size", " × ".join(words(Number(one, "m", digits=".3g")) for one in answer.size)])
+        facts.append(
+            [
+                "size",
+                " × ".join(
+                    words(Number(one, "m", digits=".3g" if one < 1 else ".5g")) for one in answer.size
+                ),
+            ]
+        )
     mechanism = answer.mechanism
     start = mechanism.drives[0].start or 0.0
     places = motion(mechanism, at=[start]).position.isel(sample=0)

@@ -115,7 +115,7 @@ async function begin(): Promise<void> {
     row.dataset.kinds = kinds; // of requests that have this field
     return row;
   };
-  const formula = make("input", { id: "formula", value: "log(x)/log(10)", spellcheck: false });
+  const formula = make("input", { id: "formula", type: "text", value: "log(x)/log(10)", spellcheck: false });
   const from = number("x_from", "1"), to = number("x_to", "2"), turns = number("swing_crank", "60"), swings = number("swing_rocker", "90");
   const topology = choice("topology", ["crank-rocker", "slider-crank-offset", "shaper", "whitworth-quick-return", "six-bar-press"], (one) => one);
   const stroke = number("stroke", "100", { min: "0" }), swing = number("swing", "40", { min: "0" }), slow = number("time_ratio", "1.25", { min: "1" });
@@ -160,12 +160,12 @@ async function begin(): Promise<void> {
 
   const paint = (): void => {
     const one = found[shown], base: Point[] = [[-WIDE / 2, -TALL / 2], [WIDE / 2, TALL / 2]];
-    const view = one ? box([...base, ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
+    const view = one ? box([...(draws() ? base : []), ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
     canvas.setAttribute("viewBox", view.join(" "));
     const unit = Math.max(view[2] / WIDE, view[3] / TALL);
     const lines = [];
-    for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
-    for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
+    if (draws()) for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
+    if (draws()) for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
     const spots = targets.map(([x, y]) => [x, y] as Point);
     const parts: SVGElement[] = [draw("path", { class: "grid", d: lines.join("") })];
     if (one) parts.push(...pictured(one));
