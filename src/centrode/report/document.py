@@ -34,7 +34,7 @@ TITLES: Mapping[Subject, str] = {
     "cam": mark("Mechanism"),
     "gear pair": mark("Gear pair"),
     "gear train": mark("Gear train"),
-    "synthesis": mark("Synthesis"),
+    "request": mark("Synthesis"),
 }
 """Of a description without a title."""
 Said: TypeAlias = Callable[[str, int, int], None]

@@ -47,7 +47,7 @@ from centrode.synthesis.requests import SynthesisTask
 # them.
 
 Wished = TypeVar("Wished")
-Subject: TypeAlias = Literal["mechanism", "cam", "gear pair", "gear train", "synthesis"]
+Subject: TypeAlias = Literal["mechanism", "cam", "gear pair", "gear train", "request"]
 
 
 @dataclass(frozen=True)
@@ -292,7 +292,7 @@ class ReportStudy:
         if isinstance(self.description, GearPair | GearTrain):
             return self.description.kind
         if isinstance(self.description, SynthesisTask):
-            return "synthesis"
+            return "request"
         return "cam" if self.is_cam else "mechanism"
 
     @property
