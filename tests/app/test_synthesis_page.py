@@ -132,6 +132,62 @@ def test_poses_by_the_keyboard_alone(page: Any) -> None:
     assert page.is_disabled("#insert")
 
 
+def test_a_function_and_strokes(page: Any) -> None:
+    page.select_option("#kind", "function")
+    assert not page.is_visible("#closed") and page.is_visible("#formula")
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    said = page.inner_text("#answers li:first-child .card")
+    # log10 x over 60 and 90 deg: 0.00697 deg is the least greatest error that is known
+    greatest = float(said.split("greatest error: ")[1].split("\u00a0")[0].split()[0])
+    assert 0.0065 < greatest < 0.0071
+    page.fill("#targets", "0 0\n14 20\n33 42\n47 55\n60 63")
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    page.select_option("#kind", "strokes")
+    assert page.is_visible("#swing") and not page.is_visible("#stroke") and not page.is_visible("#targets")
+    page.fill("#transmission", "35")
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    said = page.inner_text("#answers li:first-child .card")
+    assert "time ratio: 1.25" in said and "swing: 40" in said
+    page.select_option("#topology", "whitworth-quick-return")
+    assert page.is_visible("#stroke") and page.locator("#answers .card").count() == 0
+    page.fill("#transmission", "")
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    assert "stroke: 100" in page.inner_text("#answers li:first-child .card")
+    assert page.locator("#canvas .links").count() == 1
+
+
+def test_a_trade_off(page: Any) -> None:
+    """None of the answers is worse than another in both its error and its transmission angle."""
+    page.fill("#targets", "\n".join(f"{x:.3f} {y + 0.004 * x * x:.3f}" for x, y in LOOP[:-1:4]))
+    page.fill("#size", "")
+    page.select_option("#trade_off", "transmission")
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    cards = [card.inner_text() for card in page.locator("#answers .card").all()]
+
+    def numbers(name: str) -> list[float]:
+        return [float(card.split(name)[1].split("\u00a0")[0].split()[0]) for card in cards]
+
+    errors, angles = numbers("r.m.s. error: "), numbers("least transmission angle: ")
+    assert len(cards) > 1
+    assert errors == sorted(errors) and angles == sorted(angles)
+
+
+def test_the_workbench_leads_here(running: Any, server: Served) -> None:
+    page = running.new_page()
+    page.set_default_timeout(170_000)
+    page.goto(f"http://127.0.0.1:{server.port}/?token={server.token}&language=en")
+    page.click('[data-do="open"]')
+    page.click('[data-do="synthesis"]')
+    page.wait_for_selector("#search")
+    assert "/synthesis" in page.url
+    page.close()
+
+
 def test_what_is_wrong_is_said_and_a_search_is_stopped(page: Any) -> None:
     page.fill("#targets", "1 2")
     page.click("#search")
@@ -154,12 +210,15 @@ def test_everybody_can_use_it(running: Any, server: Served, language: str) -> No
     page.fill("#targets", "0 0 0\n30 10 20\n50 40 50")
     page.click("#search")
     page.wait_for_selector("#answers .card")
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        for wide in WIDTHS:
-            page.set_viewport_size({"width": wide, "height": 900})
-            assert page.evaluate(WIDE) == 0
-            assert page.evaluate(AUDIT, ["html", []]) == []
+    for kind in ("motion", "path", "function", "strokes"):
+        if kind != "motion":
+            page.select_option("#kind", kind)
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)
+            for wide in WIDTHS:
+                page.set_viewport_size({"width": wide, "height": 900})
+                assert page.evaluate(WIDE) == 0
+                assert page.evaluate(AUDIT, ["html", []]) == []
     page.close()
 
 

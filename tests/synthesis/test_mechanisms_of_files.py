@@ -15,6 +15,7 @@ import pytest
 
 import centrode as ct
 from centrode.synthesis import mechanism_synthesis
+from centrode.synthesis.requests import SYNTHESES
 
 PUBLISHED = {
     "links.AB.points.B.x": 2.5,
@@ -136,3 +137,65 @@ def test_what_no_mechanism_keeps_is_named(monkeypatch: pytest.MonkeyPatch) -> No
     targets = [[4.0, 4.0], [3.0, 4.0], [1.0, 4.0]]
     with pytest.raises(ct.MotionError, match="the nearest breaks size"):
         synthesise(kind="path", targets=targets, constraints={"size": [3, 3]})
+
+
+LIMITS = {"size": [12.9, 5.0], "transmission": "60 deg", "length_ratio": 1.5}
+
+
+def test_slopes_of_constraints() -> None:
+    """Derivatives of all that steers a search, against central differences."""
+    task = SYNTHESES.from_tables(
+        {
+            **tables(),
+            "synthesis": {
+                "kind": "path", "targets": [[4.0, 4.0], [3.0, 4.1], [1.0, 4.0]], "constraints": LIMITS,
+                "free": {**RANGES, "frame.points.F.y": [3.5, 4.6]},
+            },
+        }
+    )  # fmt: skip
+    search = mechanism_synthesis._MechanismSearch(task)
+    own = np.array(search.moved.own)
+    rows, slopes = search.steered_misses(own)
+    # beside the targets: width, height, two dyads at all samples, the ratio
+    assert len(rows) == 2 * 3 + 2 + 2 * mechanism_synthesis.SAMPLES + 1
+    assert (rows[6:8] > 0).all() and rows[-1] > 0 and np.count_nonzero(rows[8:-1]) > 20
+    for k in range(len(own)):
+        step = np.zeros(len(own))
+        step[k] = 1e-6
+        ahead, behind = (search.steered_misses(own + sign * step)[0] for sign in (1, -1))
+        there = (ahead > 0) == (behind > 0)
+        difference = (ahead - behind) / 2e-6
+        # a place of the curve that is nearest to a target is one of other cells there
+        assert np.abs(difference - slopes[:, k])[6:][there[6:]].max() < 1e-6 * max(1.0, np.abs(slopes).max())
+
+
+@pytest.mark.parametrize("name", ["size", "transmission"])
+def test_constraints_steer(published, name: str) -> None:
+    """What the published linkage breaks (5.90 m high, 23.1 deg) is kept, by motions and angles of one's own."""
+    places = published.position.sel(point="P").to_numpy()[2:70:9]
+    rows = [[float(x), float(y)] for x, y in places]
+    limit = {"size": [14.0, 5.7], "transmission": "25 deg"}[name]
+    found = synthesise(kind="path", point="P", targets=rows, constraints={name: limit}, answers=2)
+    for answer in found.answers:
+        moved = ct.motion(answer.mechanism, 1441).position
+        at = {p: moved.sel(point=p).to_numpy() @ [1, 1j] for p in moved.point.to_numpy()}
+        if name == "size":
+            everything = np.concatenate(list(at.values()))
+            # between its own 181 samples the search sees the box to some hundred thousandths
+            assert np.ptp(everything.real) <= 14.0
+            assert np.ptp(everything.imag) <= 5.7 * (1 + 1e-4)
+        else:
+            least = float(np.abs(np.angle((at["A"] - at["B"]) / (at["D"] - at["B"]))).min())
+            assert least >= math.radians(25) - 1e-5
+            assert answer.transmission == pytest.approx(least, abs=1e-4)
+        assert answer.defects.none
+
+
+def test_pivots_of_fixed_points() -> None:
+    targets = [[4.0, 4.0], [3.0, 4.0], [1.0, 4.0]]
+    with pytest.raises(ct.InputError, match=r"frame\.points\.F\.x"):
+        synthesise(kind="path", targets=targets, constraints={"pivots": {"x": [-1, 5]}})
+    with pytest.raises(ct.InputError, match="no fixed hinge lies both"):
+        synthesise(kind="path", targets=targets, constraints={"pivots": {"x": [-1, 1.2]}})
+    kept = synthesise(kind="path", targets=targets, answers=1, constraints={"pivots": {"x": [-1, 9.5]}})
+    assert 1.5 <= kept.mechanism.frame.points["D"][0] <= 2.8

@@ -29,10 +29,14 @@ from centrode.synthesis.synthesise import synthesise
 
 WORDS: Mapping[str, str] = {
     "title": mark("Synthesis"),
-    "lead": mark("Draw what a point or a link has to do: four-bar linkages that do it are sought."),
+    "lead": mark(
+        "Draw or write what a point, a link or an output has to do: mechanisms that do it are sought."
+    ),
     "wanted": mark("Wanted"),
     "path": mark("a path of a point"),
     "motion": mark("poses of a link"),
+    "function": mark("a function of the crank"),
+    "strokes": mark("strokes"),
     "hint_path": mark(
         "Drag a line, or press where the point has to pass. With the keyboard: arrow keys move the cross, Enter sets "
         "a point, Backspace removes the last one."
@@ -41,7 +45,38 @@ WORDS: Mapping[str, str] = {
         "Press where the link has to be and drag in its direction. With the keyboard: arrow keys move the cross, the "
         "comma and the full stop turn it, Enter sets a pose, Backspace removes the last one."
     ),
+    "hint_function": mark(
+        "Give y(x) with its range and the angles by which the crank and the rocker turn over it, or write angles of "
+        "both as rows."
+    ),
+    "hint_strokes": mark(
+        "Give the stroke, or the swing of a rocker, and the ratio of the slow to the fast stroke."
+    ),
     "drawing": mark("Drawing"),
+    "formula": mark("formula of x"),
+    "x_from": mark("x from"),
+    "x_to": mark("x to"),
+    "swing_crank": mark("the crank turns by, degrees"),
+    "swing_rocker": mark("the rocker turns by, degrees"),
+    "targets_function": mark("or angles of crank and rocker, degrees"),
+    "topology": mark("mechanism"),
+    "slider-crank-offset": mark("offset slider-crank linkage"),
+    "crank-rocker": mark("crank-rocker linkage"),
+    "shaper": mark("shaper with a slotted lever"),
+    "whitworth-quick-return": mark("Whitworth quick-return mechanism"),
+    "six-bar-press": mark("six-bar press"),
+    "wanted_stroke": mark("stroke, mm"),
+    "wanted_swing": mark("swing of the rocker, degrees"),
+    "wanted_time_ratio": mark("time ratio"),
+    "trade_off": mark("trade-off of the error"),
+    "trade_off_none": mark("none"),
+    "trade_off_size": mark("against the size"),
+    "trade_off_transmission": mark("against the transmission angle"),
+    "turn_error": mark("greatest error of the turn"),
+    "time_ratio": mark("time ratio"),
+    "stroke": mark("stroke"),
+    "swing": mark("swing"),
+    "limit_angle": mark("angle of the crank between the limit positions"),
     "targets": mark("Targets, mm"),
     "targets_motion": mark("Targets, mm and degrees"),
     "clear": mark("Remove all"),
@@ -103,8 +138,6 @@ def synthesis_answers(message: Mapping[str, Any]) -> dict[str, Any]:
         "synthesis": {"topology": "crank-rocker", **wanted},
     }
     task = SYNTHESES.from_tables(tables)
-    if task.synthesis.kind not in ("path", "motion"):
-        raise InputError("kind", _("the server does not know this request"))
     with _files(_folder(message)) as folder:
 
         def say(share: float) -> None:
@@ -134,21 +167,34 @@ def _files(folder: Path) -> Iterator[Path]:
 
 def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
     """An answer as the page shows it: places in millimetres."""
-    display = found.task.display
+    display, kind = found.task.display, found.task.synthesis.kind
+    unit = "rad" if kind == "function" else "m"
 
     def words(text: Text) -> str:
         return render.screen_text(text, display)
 
-    facts = [
-        ["error", words(Number(answer.error, "m", digits=".3g"))],
-        ["greatest", words(Number(answer.greatest, "m", digits=".3g"))],
+    facts = []
+    if kind != "strokes":
+        facts += [
+            ["error", words(Number(answer.error, unit, digits=".3g"))],
+            ["greatest", words(Number(answer.greatest, unit, digits=".3g"))],
+        ]
+    facts += [
+        [name, words(Number(value, its, digits=".4g"))] for name, (value, its) in answer.numbers.items()
     ]
     if math.isfinite(answer.transmission):
         facts.append(["least_transmission", words(Number(answer.transmission, "rad", digits=".3g"))])
     if all(map(math.isfinite, answer.size)):
-        facts.append(["size", " × ".join(words(Number(one, "m", digits=".3g")) for one in answer.size)])
+        facts.append(
+            [
+                "size",
+                " × ".join(
+                    words(Number(one, "m", digits=".3g" if one < 1 else ".5g")) for one in answer.size
+                ),
+            ]
+        )
     mechanism = answer.mechanism
-    start = float(answer.drive[0]) if len(answer.drive) else 0.0
+    start = mechanism.drives[0].start or 0.0
     places = motion(mechanism, at=[start]).position.isel(sample=0)
     points = {
         str(name): _place(complex(*places.sel(point=name).to_numpy().tolist()))
@@ -163,6 +209,8 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
         "curve": [_place(one) for one in answer.curve[::EVERY]],
         "met": [_place(one) for one in answer.met],
         "points": points,
+        "fixed": list(mechanism.frame.points),
+        "links": [[name for name in link.points if name in points] for link in mechanism.links.values()],
         "text": mechanism_text(mechanism),
     }
 

@@ -146,6 +146,8 @@ WORDS: Mapping[str, str] = {
     "templates": mark("Templates"),
     "gears": mark("Gears"),
     "gear_pair": mark("Gear pair"),
+    "synthesis": mark("Synthesis"),
+    "synthesis_lead": mark("Find a mechanism for a motion"),
     "filter": mark("Filter the templates"),
     "file_name": mark("Name of the file"),
     "saved": mark("Saved as {name}."),

@@ -134,7 +134,7 @@ def report(
     greatest_change: float | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
-    described = library.load_description(description)
+    described = library.reported_subject(description)
     folder, name, kinds = _place(out, description, formats)
     _writing().check_formats(kinds)
     with about(description):

@@ -40,10 +40,17 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 @click.command(help=mark("Find mechanisms for a path, a function, poses or strokes."))
 @click.argument("wanted", metavar=mark("FILE"))
 @written_option
+@click.option(
+    "--jobs",
+    type=int,
+    default=1,
+    metavar=mark("N"),
+    help=mark("Number of parallel processes."),
+)
 @tables_options
 @no_figures_option
 @dark_option
-def synthesise(wanted: str, out: Path | None, no_figures: bool, dark: bool) -> None:
+def synthesise(wanted: str, out: Path | None, jobs: int, no_figures: bool, dark: bool) -> None:
     """Print the answers, and write them with their pictures where a folder is named."""
     with about(wanted):
         task = library.read_synthesis(wanted)
@@ -56,11 +63,11 @@ def synthesise(wanted: str, out: Path | None, no_figures: bool, dark: bool) -> N
         names: list[str] = []
         if out is None:
             with about(wanted):
-                sheet = library.sheet_of(library.synthesise(task, say, stopped))
+                sheet = library.sheet_of(library.synthesise(task, say, stopped, jobs))
         else:
             with output.output_folder(out) as draft:
                 with about(wanted):
-                    sheet = library.sheet_of(library.synthesise(task, say, stopped))
+                    sheet = library.sheet_of(library.synthesise(task, say, stopped, jobs))
                 write_sheet(sheet, draft, task.display, progress, figures=not no_figures, dark=dark)
                 render.write_summary(sheet.scalars, draft / "summary.json")
                 names = output.file_names(draft)

@@ -12,7 +12,7 @@ import lazy_loader
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, mark, speaking
-from centrode.model.examples.catalogue import DescribedSource, files_of, reported_description
+from centrode.model.examples.catalogue import files_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import ChapterText
 from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
@@ -23,6 +23,8 @@ from centrode.report.files import lacking
 from centrode.report.note import CONCLUSIONS, as_note, standard_of, with_capital_heads
 from centrode.report.opening_pictures import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, Subject, settle_options
+from centrode.report.subjects import ReportedSource, reported_subject
+from centrode.synthesis.requests import SynthesisTask
 from centrode.version import __version__
 
 _prose = functools.partial(lazy_loader.load, "centrode.report.prose", suppress_warning=True)
@@ -32,6 +34,7 @@ TITLES: Mapping[Subject, str] = {
     "cam": mark("Mechanism"),
     "gear pair": mark("Gear pair"),
     "gear train": mark("Gear train"),
+    "request": mark("Synthesis"),
 }
 """Of a description without a title."""
 Said: TypeAlias = Callable[[str, int, int], None]
@@ -39,7 +42,7 @@ Said: TypeAlias = Callable[[str, int, int], None]
 
 
 def report(
-    description: DescribedSource,
+    description: ReportedSource,
     options: ReportOptions | None = None,
     *,
     at: Sequence[float | str] | float | str | None = None,
@@ -47,11 +50,11 @@ def report(
     name: str = "",
     said: Said | None = None,
 ) -> Report:
-    """A document about a mechanism, a cam or gears, from its data to its forces, as chapters of blocks.
+    """A document about a mechanism, a cam, gears or a synthesis, from its data to its forces, as chapters of blocks.
 
     Parameters
     ----------
-    description : Mechanism, Cam, PlateCam, GearPair or GearTrain
+    description : Mechanism, Cam, PlateCam, GearPair, GearTrain or SynthesisTask
     options : ReportOptions, optional
         Go before the wishes of the description.
     at : values of the drive [rad or m; s with several drives], angles of a cam, or texts with a unit ("120 deg")
@@ -81,7 +84,7 @@ def report(
     >>> [chapter.name for chapter in made.chapters]
     ['structure']
     """
-    description = reported_description(description)
+    description = reported_subject(description)
     options = options or ReportOptions()
     if at is not None:
         options = replace(options, instants=at)
@@ -117,16 +120,18 @@ def _is_wanted(key: str, study: ReportStudy, is_note: bool) -> bool:
     return named or is_note if key == CONCLUSIONS else study.wants(key)
 
 
-def _description_text(study: ReportStudy) -> DescriptionText:
-    """The description as a file, with the instants of the report."""
+def _description_text(study: ReportStudy) -> DescriptionText | None:
+    """The description as a file, with the instants of the report; None of a request, whose targets lie beside it."""
     description, instants = study.description, study.wishes.instants
+    if isinstance(description, SynthesisTask):
+        return None
     text = files_of(description).text(description)
     if not isinstance(description, Mechanism):
-        return DescriptionText(text, study.subject, instants)
+        return DescriptionText(text, "cam" if study.is_cam else description.kind, instants)
     parameter = description.motion_parameter
     uniform = parameter.is_uniform and len(description.drives) == 1
     start = parameter.drives[0].value_of(description.drives[0].start or 0.0) if uniform else 0.0
-    return DescriptionText(text, study.subject, instants or (start,))
+    return DescriptionText(text, "mechanism", instants or (start,))
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:

@@ -40,14 +40,14 @@ from centrode.model.settings import (
 from centrode.model.units import read_quantity
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
+from centrode.report.subjects import Reported
+from centrode.synthesis.requests import SynthesisTask
 
 # What a report is to hold: the wishes of the description's [report], and those of the caller, which go before
 # them.
 
 Wished = TypeVar("Wished")
-Reported: TypeAlias = Mechanism | AnyCam | GearPair | GearTrain
-"""What there are reports on."""
-Subject: TypeAlias = Literal["mechanism", "cam", "gear pair", "gear train"]
+Subject: TypeAlias = Literal["mechanism", "cam", "gear pair", "gear train", "request"]
 
 
 @dataclass(frozen=True)
@@ -215,7 +215,7 @@ def _instants_of(
     description: Reported, given: Sequence[float | str] | float | str | None
 ) -> tuple[float, ...]:
     """Instants in SI, those of the description where a caller gives none; gears have none."""
-    if isinstance(description, GearPair | GearTrain):
+    if isinstance(description, GearPair | GearTrain | SynthesisTask):
         if given is not None:
             raise InputError("at", _("instants are those of mechanisms and cams"), _("omit them"))
         return ()
@@ -242,7 +242,7 @@ class ReportStudy:
 
     Attributes
     ----------
-    description : Mechanism, Cam, PlateCam, GearPair or GearTrain
+    description : Mechanism, Cam, PlateCam, GearPair, GearTrain or SynthesisTask
     wishes : what the report is to hold
     numbers : how it spells its numbers
     """
@@ -291,6 +291,8 @@ class ReportStudy:
         """What is reported on, as topics call it."""
         if isinstance(self.description, GearPair | GearTrain):
             return self.description.kind
+        if isinstance(self.description, SynthesisTask):
+            return "request"
         return "cam" if self.is_cam else "mechanism"
 
     @property

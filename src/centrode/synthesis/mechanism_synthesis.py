@@ -8,19 +8,21 @@ a miss is the distance along the normal, and the derivative of that place falls 
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.optimize import least_squares
 
+from centrode.analysis.transmission import transmission_angles
 from centrode.errors import CentrodeError, InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import two_points, value_text
+from centrode.model.reading import value_text
 from centrode.model.units import read_quantity
 from centrode.sweeps.designs import kind_of
 from centrode.sweeps.solver import Solver, solver
@@ -28,6 +30,8 @@ from centrode.synthesis.answers import CHECKED_PLACES, Answer, Defects, Synthesi
 from centrode.synthesis.four_bars import Array, Complex
 from centrode.synthesis.improvement import describe_moved
 from centrode.synthesis.measures import Measure, hermite, measure_of
+from centrode.synthesis.mechanism_constraints import link_ends, mechanism_constraints
+from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import Synthesis, SynthesisTask
 
 STARTS = 400
@@ -35,10 +39,13 @@ STARTS = 400
 REFINED = 24
 """The best of them go on."""
 SAMPLES = 181
+SOFT, SHARP = 30.0, 1e4
+"""Weights, at first and at the end, of a constraint that is exceeded by its own size against a target that is missed by
+the size of the path: what is left of it falls with the square."""
+SHARE = 3
+"""Starts that one process refines after the other."""
 KEPT = 1e-6
 Progress: TypeAlias = Callable[[float], None]
-Misses: TypeAlias = Callable[[Array], tuple[Array, Array, Array]]
-"""values -> misses (m,), derivatives (m, free), drive values at the targets; raises _Open."""
 
 
 class _BrokenMotion(Exception):
@@ -47,15 +54,91 @@ class _BrokenMotion(Exception):
 
 @dataclass(frozen=True)
 class _Wanted:
-    """What the misses are of: their outputs, and how they follow from these."""
+    """What the misses are of: their outputs, and how they follow from these.
+
+    Attributes
+    ----------
+    at : values of the drive of targets that have some
+    size : of the misses, in which constraints are weighed
+    """
 
     outputs: Mapping[str, str]
     at: Array | None
+    size: float
     misses: Callable[[Solver, Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]
 
 
+class _MechanismSearch:
+    """What is wanted of a mechanism of a file, made into misses; another process makes its own from the request."""
+
+    def __init__(self, task: SynthesisTask) -> None:
+        wanted, mechanism = task.synthesis, task.mechanism
+        assert mechanism is not None
+        self.task = task
+        self.names, self.low, self.high = _ranges(mechanism, wanted)
+        _narrow_pivots(mechanism, wanted, self.names, self.low, self.high)
+        self.goal = _goal(mechanism, wanted)
+        self.kept = mechanism_constraints(mechanism, wanted.constraints)
+        outputs, kept, at = dict(self.goal.outputs), dict(self.kept.outputs), self.goal.at
+        if at is None:
+            self.moved = solver(mechanism, self.names, SAMPLES, outputs={**outputs, **kept})
+        else:
+            self.moved = solver(mechanism, self.names, None, at=at, outputs=outputs)
+        # targets with times say nothing of what is between them: constraints have the whole motion
+        self.whole = solver(mechanism, self.names, SAMPLES, outputs=kept) if at is not None and kept else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _MechanismSearch, (self.task,)
+
+    def misses(self, values: Array) -> tuple[Array, Array, Array]:
+        """Misses of the targets alone, their derivatives, values of the drive at the targets; raises _BrokenMotion."""
+        return self.goal.misses(self.moved, *_numbers(self.moved, values))
+
+    def steered_misses(self, values: Array, weight: float = SOFT) -> tuple[Array, Array]:
+        """Misses of the targets, then of the constraints, with their derivatives; raises _BrokenMotion."""
+        numbers, slopes = _numbers(self.moved, values)
+        missed, by, _drive = self.goal.misses(self.moved, numbers, slopes)
+        if self.whole is not None:
+            numbers, slopes = _numbers(self.whole, values)
+        exceeded, exceeded_by = self.kept.misses(self.whole or self.moved, numbers, slopes)
+        size = weight * self.goal.size
+        return np.concatenate([missed, size * exceeded]), np.concatenate([by, size * exceeded_by])
+
+    def cost(self, values: Array) -> float:
+        """Sum of squares of what a start misses; infinite where it does not move."""
+        try:
+            numbers, none = _without_slopes(self.moved, values)
+            missed, _by, _drive = self.goal.misses(self.moved, numbers, none)
+            if self.whole is not None:
+                numbers, none = _without_slopes(self.whole, values)
+        except (_BrokenMotion, ZeroDivisionError):
+            return math.inf
+        exceeded, _slopes = self.kept.misses(self.whole or self.moved, numbers, none)
+        cost = float((missed**2).sum() + (SOFT * self.goal.size) ** 2 * (exceeded**2).sum())
+        return cost if math.isfinite(cost) else math.inf
+
+
+def _numbers(moved: Solver, values: Array) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
+    """Outputs and their derivatives; raises _BrokenMotion."""
+    numbers, slopes = np.asarray(moved.outputs(values)), moved.gradient(values)
+    if not (np.isfinite(numbers).all() and np.isfinite(slopes).all()):
+        raise _BrokenMotion
+    return moved.split(numbers), moved.split(slopes)
+
+
+def _without_slopes(moved: Solver, values: Array) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
+    """Outputs, and zeros in place of their derivatives, which take most of the time; raises _BrokenMotion."""
+    numbers = np.asarray(moved.outputs(values))
+    if not np.isfinite(numbers).all():
+        raise _BrokenMotion
+    return moved.split(numbers), moved.split(np.zeros((*numbers.shape, len(values))))
+
+
 def mechanism_answers(
-    task: SynthesisTask, progress: Progress = lambda share: None, stop: Callable[[], bool] = lambda: False
+    task: SynthesisTask,
+    progress: Progress = lambda share: None,
+    stop: Callable[[], bool] = lambda: False,
+    processes: Processes = HERE,
 ) -> SynthesisResults:
     """The mechanism of a file with the free numbers that do what is wanted best.
 
@@ -66,47 +149,22 @@ def mechanism_answers(
     MotionError
         Nothing between the bounds moves all along, or keeps what is required.
     """
-    wanted, mechanism = task.synthesis, task.mechanism
-    assert mechanism is not None
-    names, low, high = _ranges(mechanism, wanted)
-    goal = _goal(mechanism, wanted)
-    moved = solver(
-        mechanism, names, None if goal.at is not None else SAMPLES, at=goal.at, outputs=dict(goal.outputs)
-    )
-
-    def misses(values: Array) -> tuple[Array, Array, Array]:
-        numbers = np.asarray(moved.outputs(values))
-        slopes = moved.gradient(values)
-        if not (np.isfinite(numbers).all() and np.isfinite(slopes).all()):
-            raise _BrokenMotion
-        return goal.misses(moved, moved.split(numbers), moved.split(slopes))
-
-    starts = _starts(moved, goal, low, high, wanted.seed, stop)
+    wanted = task.synthesis
+    search = _MechanismSearch(task)
+    starts = _starts(search, wanted.seed, stop)
     if not starts:
         what = _("no mechanism between the bounds moves all along")
         raise MotionError("[synthesis.free]", what, _("choose other ranges, or another start of the drive"))
     progress(0.3)
-    found: list[tuple[float, Array]] = []
-    for count, start in enumerate(starts[:REFINED]):
-        if stop() and found:
-            break
-        found.append(_refine(misses, start, low, high))
-        progress(0.3 + 0.6 * (count + 1) / min(len(starts), REFINED))
+    shares = [starts[k : k + SHARE] for k in range(0, min(len(starts), REFINED), SHARE)]
+    fitted: dict[int, list[tuple[float, Array]]] = {}
+    work = functools.partial(_refine_share, search)
+    for index, share in processes.compute(work, shares, lambda: stop() and bool(fitted)):
+        fitted[index] = share
+        progress(0.3 + 0.6 * len(fitted) / len(shares))
+    found = [one for index in sorted(fitted) for one in fitted[index]]
     found.sort(key=lambda one: one[0])
-    answers: list[Answer] = []
-    seen: list[Array] = []
-    broken: list[str] = []
-    for _cost, values in found:
-        if any(np.abs((values - other) / (high - low)).max() < 1e-4 for other in seen):
-            continue
-        seen.append(values)
-        answer, why = _answer(task, moved, names, values, misses)
-        if answer is None:
-            broken.append(why)
-            continue
-        answers.append(answer)
-        if len(answers) == wanted.answers:
-            break
+    answers, broken = _distinct_answers(search, found)
     progress(1.0)
     if not answers:
         what = _("no mechanism that was found keeps everything that is required")
@@ -116,7 +174,52 @@ def mechanism_answers(
     if wanted.kind == "path":
         rows = np.array(wanted.rows)
         targets = rows[:, 0] + 1j * rows[:, 1]
-    return SynthesisResults(task, tuple(answers), targets, examined=STARTS, complete=not stop())
+    return SynthesisResults(task, answers, targets, examined=STARTS, complete=not stop())
+
+
+def _distinct_answers(
+    search: _MechanismSearch, found: Sequence[tuple[float, Array]]
+) -> tuple[tuple[Answer, ...], list[str]]:
+    """Different answers that keep everything, the best first, and what others break."""
+    answers: list[Answer] = []
+    seen: list[Array] = []
+    broken: list[str] = []
+    width = search.high - search.low
+    for _cost, values in found:
+        if any(np.abs((values - other) / width).max() < 1e-4 for other in seen):
+            continue
+        seen.append(values)
+        answer, why = _answer(search, values)
+        if answer is None:
+            broken.append(why)
+            continue
+        answers.append(answer)
+        if len(answers) == search.task.synthesis.answers:
+            break
+    return tuple(sorted(answers, key=lambda one: one.error)), broken
+
+
+def _narrow_pivots(
+    mechanism: Mechanism, wanted: Synthesis, names: Sequence[str], low: Array, high: Array
+) -> None:
+    """Ranges of the frame's points put within [synthesis.constraints] pivots; InputError where nothing is left."""
+    pivots = wanted.constraints.pivots
+    for k, (axis, box) in enumerate((("x", pivots.x), ("y", pivots.y))):
+        if box is None:
+            continue
+        where = f"[synthesis.constraints] pivots.{axis}"
+        for name, at in mechanism.frame.points.items():
+            path = f"frame.points.{name}.{axis}"
+            if path in names:
+                own = list(names).index(path)
+                low[own], high[own] = max(low[own], box[0]), min(high[own], box[1])
+                if not low[own] < high[own]:
+                    what = _("no fixed hinge lies both in pivots and in its own range")
+                    raise InputError(where, what, _("widen one of them"))
+            elif isinstance(at, tuple) and not box[0] <= at[k] <= box[1]:
+                what = _("the fixed point {name} stands outside, and is not free")
+                repair = _("widen it, or free {path}").format(path=path)
+                raise InputError(where, what.format(name=value_text(name)), repair)
 
 
 def _ranges(mechanism: Mechanism, wanted: Synthesis) -> tuple[list[str], Array, Array]:
@@ -166,6 +269,7 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
         )
     rows = np.array(wanted.rows, dtype=np.float64)
     targets = rows[:, :2]
+    size = float(np.linalg.norm(targets - targets.mean(axis=0), axis=1).max())
     if wanted.timing == "given":
         outputs = {"x": f"position_{point}_x", "y": f"position_{point}_y"}
 
@@ -175,7 +279,7 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
             missed = np.concatenate([values["x"] - targets[:, 0], values["y"] - targets[:, 1]])
             return missed, np.concatenate([by["x"], by["y"]]), moved.parameter
 
-        return _Wanted(outputs, rows[:, 2], given)
+        return _Wanted(outputs, rows[:, 2], size, given)
     outputs = {
         "x": f"position_{point}_x", "y": f"position_{point}_y", "u": f"velocity_{point}_x", "v": f"velocity_{point}_y",
     }  # fmt: skip
@@ -220,7 +324,7 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
         drive = moved.parameter[0] + steps * (cells + part)
         return rows_missed.ravel(), rows_by.reshape(-1, slopes.shape[-1]), drive
 
-    return _Wanted(outputs, None, nearest)
+    return _Wanted(outputs, None, size, nearest)
 
 
 def _ordered_places(
@@ -289,7 +393,7 @@ def _function_goal(wanted: Synthesis) -> _Wanted:
             missed = np.unwrap(missed)
         return missed - missed.mean(), by["output"] - by["output"].mean(axis=0), moved.parameter
 
-    return _Wanted({"output": output}, rows[:, 0], misses)
+    return _Wanted({"output": output}, rows[:, 0], float(np.ptp(rows[:, 1])) or 1.0, misses)
 
 
 def _stroke_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
@@ -332,46 +436,58 @@ def _stroke_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
             slopes.append(part_by / scale / math.sqrt(len(within)))
         return np.concatenate(missed), np.concatenate(slopes), np.empty(0)
 
-    return _Wanted(outputs, None, misses)
+    return _Wanted(outputs, None, 1.0, misses)
 
 
-def _starts(
-    moved: Solver, goal: _Wanted, low: Array, high: Array, seed: int, stop: Callable[[], bool]
-) -> list[Array]:
+def _starts(search: _MechanismSearch, seed: int, stop: Callable[[], bool]) -> list[Array]:
     """Values between the bounds with which the mechanism moves, the best first; the own ones where they lie there."""
     random = np.random.default_rng(seed)
-    drawn = [*random.uniform(low, high, (STARTS, len(low)))]
-    own = np.array(moved.own)
-    drawn.insert(0, np.clip(own, low, high))
+    drawn = [*random.uniform(search.low, search.high, (STARTS, len(search.low)))]
+    drawn.insert(0, np.clip(np.array(search.moved.own), search.low, search.high))
     costs: list[tuple[float, int]] = []
-    none = np.zeros((len(low),))
     for index, values in enumerate(drawn):
         if stop():
             break
-        numbers = np.asarray(moved.outputs(values))
-        if not np.isfinite(numbers).all():
-            continue
-        slopes = moved.split(np.zeros((*numbers.shape, *none.shape)))
-        try:
-            missed, _by, _drive = goal.misses(moved, moved.split(numbers), slopes)
-        except (_BrokenMotion, ZeroDivisionError):
-            continue
-        if np.isfinite(missed).all():
-            costs.append((float((missed**2).sum()), index))
+        cost = search.cost(values)
+        if math.isfinite(cost):
+            costs.append((cost, index))
     return [drawn[index] for _cost, index in sorted(costs)]
 
 
-def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[float, Array]:
+def _refine_share(
+    search: _MechanismSearch, starts: Sequence[Array], stop: Callable[[], bool] = lambda: False
+) -> list[tuple[float, Array]]:
+    """The minima next to some starts; the first is refined in any case."""
+    found: list[tuple[float, Array]] = []
+    for start in starts:
+        if stop() and found:
+            break
+        found.append(_refine(search, start))
+    return found
+
+
+def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
+    """The next minimum from a start; where constraints press against it, as sharply as they are checked."""
+    cost, values = _descend(search, start, SOFT)
+    if math.isfinite(cost) and search.kept.outputs:
+        return _descend(search, values, SHARP)
+    return cost, values
+
+
+def _descend(search: _MechanismSearch, start: Array, weight: float) -> tuple[float, Array]:
     """The next minimum from a start, in units of the ranges; a step to where nothing moves is taken back."""
-    width = high - low
+    low, width = search.low, search.high - search.low
     best = start
     least = math.inf
-    count = len(misses(start)[0])
+    try:
+        count = len(search.steered_misses(start, weight)[0])
+    except _BrokenMotion:
+        return math.inf, start
 
     def rows(place: Array) -> Array:
         nonlocal best, least
         try:
-            missed = misses(low + width * place)[0]
+            missed = search.steered_misses(low + width * place, weight)[0]
         except _BrokenMotion:
             return np.full(count, 1e3 * (1 + math.sqrt(least) if math.isfinite(least) else 1e3))
         cost = float((missed**2).sum())
@@ -381,7 +497,7 @@ def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[floa
 
     def slopes(place: Array) -> Array:
         try:
-            by: Array = misses(low + width * place)[1] * width
+            by: Array = search.steered_misses(low + width * place, weight)[1] * width
         except _BrokenMotion:
             return np.zeros((count, len(place)))
         return by
@@ -391,14 +507,12 @@ def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[floa
     return least, best
 
 
-def _answer(
-    task: SynthesisTask, moved: Solver, names: list[str], values: Array, misses: Misses
-) -> tuple[Answer | None, str]:
+def _answer(search: _MechanismSearch, values: Array) -> tuple[Answer | None, str]:
     """The answer of these values, or what it breaks."""
-    wanted = task.synthesis
-    missed, _by, drive = misses(values)
+    wanted = search.task.synthesis
+    missed, _by, drive = search.misses(values)
     try:
-        mechanism = describe_moved(moved, dict(zip(names, values.tolist(), strict=True)))
+        mechanism = describe_moved(search.moved, dict(zip(search.names, values.tolist(), strict=True)))
         data = motion(mechanism, CHECKED_PLACES)
     except CentrodeError as failure:
         return None, failure.what
@@ -417,7 +531,8 @@ def _answer(
         order = not _in_order(drive)
     if wanted.kind == "strokes":
         numbers = dict(_stroke_numbers(mechanism, wanted))
-    broken = next(_broken(mechanism, wanted, size, branch, order), None)
+    transmission = least_angle(mechanism)
+    broken = next(_broken(mechanism, wanted, size, transmission, branch, order), None)
     if broken is not None:
         return None, broken
     return Answer(
@@ -425,7 +540,7 @@ def _answer(
         float(np.sqrt(np.mean(errors**2))),
         float(np.max(np.abs(errors))),
         float((errors**2).sum()),
-        math.nan,
+        transmission,
         size,
         Defects(order, branch, False),
         curve,
@@ -470,7 +585,12 @@ def _stroke_numbers(mechanism: Mechanism, wanted: Synthesis) -> Iterator[tuple[s
 
 
 def _broken(
-    mechanism: Mechanism, wanted: Synthesis, size: tuple[float, float], branch: bool, order: bool
+    mechanism: Mechanism,
+    wanted: Synthesis,
+    size: tuple[float, float],
+    transmission: float,
+    branch: bool,
+    order: bool,
 ) -> Iterator[str]:
     """Names of what an answer does not keep."""
     constraints = wanted.constraints
@@ -478,6 +598,8 @@ def _broken(
         yield "crank" if constraints.crank is not None else "order"
     if order and constraints.order:
         yield "order"
+    if constraints.transmission is not None and not transmission >= constraints.transmission - KEPT:
+        yield "transmission"
     if constraints.size is not None and any(
         own > most * (1 + KEPT) for own, most in zip(size, constraints.size, strict=True)
     ):
@@ -493,10 +615,16 @@ def _broken(
             yield "length_ratio"
 
 
+def least_angle(mechanism: Mechanism) -> float:
+    """Least transmission angle [rad] of all dyads over the whole motion; NaN where there is none."""
+    try:
+        least = transmission_angles(mechanism, CHECKED_PLACES).least_transmission_angle.to_numpy()
+    except CentrodeError:
+        return math.nan
+    return float(least.min())
+
+
 def _lengths(mechanism: Mechanism) -> Iterator[float]:
-    for name, link in mechanism.links.items():
-        at = link.coordinates
-        named = two_points(name)
-        ends = [at[end] for end in named] if named and set(named) <= set(at) else list(at.values())
-        if len(ends) > 1:
-            yield math.dist(ends[0][:2], ends[1][:2])
+    for link, (first, second) in link_ends(mechanism).items():
+        at = mechanism.links[link].coordinates
+        yield math.dist(at[first][:2], at[second][:2])

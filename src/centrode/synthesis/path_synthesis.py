@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,9 +41,11 @@ from centrode.synthesis.least_squares import (
     is_ordered,
     least_squares,
 )
+from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import Constraints, Synthesis, SynthesisTask
 from centrode.synthesis.start_candidates import (
     closed_candidates,
+    nearby_candidates,
     open_candidates,
     random_candidates,
     timed_candidates,
@@ -75,7 +77,10 @@ OWN = {"O": (0.0, 0.0), "D": (4.0, 0.0), "lengths": (1.0, 3.5, 3.0)}
 
 
 def path_answers(
-    task: SynthesisTask, progress: Progress = lambda share: None, stop: Callable[[], bool] = lambda: False
+    task: SynthesisTask,
+    progress: Progress = lambda share: None,
+    stop: Callable[[], bool] = lambda: False,
+    processes: Processes = HERE,
 ) -> SynthesisResults:
     """Four-bar linkages for a path, or for poses of the coupler in the least squares sense.
 
@@ -101,7 +106,14 @@ def path_answers(
     problem = _problem(wanted, Targets(scaled, directions, drive), middle, size)
     lanes = _candidates(wanted, problem, closed, wanted.seed)
     examined = len(lanes.side)
-    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop)
+    random = np.random.default_rng([wanted.seed, 1])
+
+    def neighbours(lanes: FitLanes, distance: float, count: int) -> FitLanes:
+        near = nearby_candidates(problem.targets, lanes, distance, count, random)
+        near.variables = np.clip(near.variables, problem.low, problem.high)
+        return near
+
+    lanes = fit_lanes(problem, lanes, closed, wanted.constraints.order, progress, stop, neighbours, processes)
     answers, nearest_miss = _answers(task, problem, lanes, middle, size, closed)
     if not answers:
         raise _nothing(wanted, nearest_miss, _broken_name(wanted.constraints, lanes, size))
@@ -181,12 +193,27 @@ def _bounds(wanted: Synthesis) -> dict[int, tuple[float, float]]:
     return found
 
 
+@dataclass(frozen=True)
+class ConstraintHinges:
+    """Constraints as residuals that are positive where they do not hold.
+
+    Attributes
+    ----------
+    size : of the targets [m], the unit
+    """
+
+    constraints: Constraints
+    size: float
+
+    def __call__(self, variables: Array, side: Array) -> Array:
+        """All of them (lanes, m)."""
+        parts = [part(variables, side) for _name, part in named_hinges(self.constraints, self.size)]
+        return np.concatenate(parts, axis=1)
+
+
 def hinges_of(constraints: Constraints, size: float) -> Hinges | None:
-    """The constraints as residuals that are positive where they do not hold; None where there are none."""
-    parts = [part for _name, part in named_hinges(constraints, size)]
-    if not parts:
-        return None
-    return lambda variables, side: np.concatenate([part(variables, side) for part in parts], axis=1)
+    """The constraints as residuals; None where there are none."""
+    return ConstraintHinges(constraints, size) if named_hinges(constraints, size) else None
 
 
 def named_hinges(constraints: Constraints, size: float) -> list[tuple[str, Hinges]]:
@@ -334,7 +361,7 @@ def _answers(
         broken = lanes.violation[k] > MET
         unordered = constraints.order and not is_ordered((crank * sense)[None], closed)[0]
         miss = min(miss, float(np.sqrt(np.mean(errors**2))))
-        if broken or unordered:
+        if broken or unordered or any(_draws_alike(linkage, side, errors, one, size) for one in found):
             continue
         answer = four_bar_answer(task, linkage, side, crank, sense, errors, closed, numbers, further)
         if constraints.order and not answer.defects.none:
@@ -358,6 +385,18 @@ def direction_point(linkage: Array, attachment: float) -> Mapping[str, list[floa
             float(linkage[PY] + arm * np.sin(attachment)),
         ]
     }
+
+
+def _draws_alike(linkage: Array, side: float, errors: Array, other: Answer, size: float) -> bool:
+    """Whether a linkage whose crank turns fully draws the curve of an answer; it need not be proved then."""
+    error = float(np.sqrt(np.mean(errors**2)))
+    if abs(error - other.error) > 1e-3 * other.error + 1e-9 * size or not len(other.curve):
+        return False
+    if not (crank_margins(linkage[None]) > 0).all():
+        return False
+    turn = np.linspace(0.0, 2 * np.pi, 61)
+    curve = coupler_motion(linkage[None], turn, np.array([side])).point[0]
+    return bool(np.abs(curve[:, None] - other.curve[None]).min(axis=1).max() < 2e-2 * size)
 
 
 def _alike(answer: Answer, other: Answer, size: float) -> bool:

@@ -28,7 +28,7 @@ from centrode.model.reading import (
     nearest,
     value_text,
 )
-from centrode.model.settings import Display, whole_number
+from centrode.model.settings import Display, GearReportWishes, whole_number
 from centrode.model.toml import SYNTHESIS, description_kind, refuse_other_kind
 from centrode.model.values import (
     READING,
@@ -408,6 +408,7 @@ class SynthesisTask(DescriptionPart):
     ----------
     title : str
     display : Display
+    report : GearReportWishes
     synthesis : Synthesis
     mechanism : Mechanism or None
 
@@ -421,6 +422,7 @@ class SynthesisTask(DescriptionPart):
 
     title: Text = ""
     display: Display = Display()
+    report: GearReportWishes = GearReportWishes()
     synthesis: Synthesis
     mechanism: Mechanism | None = None
 
@@ -462,20 +464,23 @@ class _SynthesisFiles(DescriptionFiles[SynthesisTask]):
             raise InputError(where, _("there is no table [synthesis]"), repair)
         others = {key: value for key, value in mapping.items() if key != SYNTHESIS}
         named = isinstance(mapping[SYNTHESIS], Mapping) and mapping[SYNTHESIS].get("topology") is not None
-        kept = {key: mapping[key] for key in ("title", "display", SYNTHESIS) if key in mapping}
+        kept = {key: mapping[key] for key in ("title", "display", "report", SYNTHESIS) if key in mapping}
         mechanism = None
         if "links" in others:
             if named:
                 what = _("the file describes links, and names a topology")
                 raise InputError(where, what, _("remove topology, or the links"))
             mechanism = mechanism_from(others, where, folder, bare_angles)
+            if isinstance(wishes := kept.get("report"), Mapping):
+                # instants and the like are those of a mechanism's own report
+                kept["report"] = {k: v for k, v in wishes.items() if k in GearReportWishes.model_fields}
         elif not named:
             what = _("the structure that is sought is not given")
             repair = _('name a topology, as topology = "crank-rocker", or describe links')
             raise InputError(where, what, repair)
         elif unknown := [key for key in others if key not in kept]:
             what = _("unknown key {key}").format(key=value_text(unknown[0]))
-            raise InputError(where, what, nearest(unknown[0], ("title", "display", SYNTHESIS)))
+            raise InputError(where, what, nearest(unknown[0], ("title", "display", "report", SYNTHESIS)))
         task = super().from_tables(kept, where, folder, bare_angles)
         return task.model_copy(update={"mechanism": mechanism})
 

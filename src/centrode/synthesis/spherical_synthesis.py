@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from centrode.synthesis.least_squares import (
     Targets,
     is_ordered,
 )
+from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import MOST_POSES, Constraints, Synthesis, SynthesisTask
 from centrode.synthesis.spherical_dyads import posed_linkages, poses_of, spherical_dyads
 from centrode.synthesis.spherical_four_bars import (
@@ -78,7 +80,10 @@ FREE = {
 
 
 def spherical_answers(
-    task: SynthesisTask, progress: Progress = lambda share: None, stop: Callable[[], bool] = lambda: False
+    task: SynthesisTask,
+    progress: Progress = lambda share: None,
+    stop: Callable[[], bool] = lambda: False,
+    processes: Processes = HERE,
 ) -> SynthesisResults:
     """Spherical four-bar linkages for a path, a function or poses of the coupler.
 
@@ -106,13 +111,15 @@ def spherical_answers(
         and not wanted.free
     ):
         return _pose_answers(task, progress, stop)
-    return _path_answers(task, progress, stop)
+    return _path_answers(task, progress, stop, processes)
 
 
 # Paths, and many poses in the least squares sense
 
 
-def _path_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bool]) -> SynthesisResults:
+def _path_answers(
+    task: SynthesisTask, progress: Progress, stop: Callable[[], bool], processes: Processes
+) -> SynthesisResults:
     wanted = task.synthesis
     rows = np.array(wanted.rows, dtype=np.float64)
     is_motion = wanted.kind == "motion"
@@ -129,7 +136,9 @@ def _path_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
     problem = _problem(wanted, targets)
     lanes = _candidates(wanted, problem, bool(closed))
     examined = len(lanes.side)
-    lanes = fit_lanes(problem, lanes, bool(closed), wanted.constraints.order, progress, stop)
+    lanes = fit_lanes(
+        problem, lanes, bool(closed), wanted.constraints.order, progress, stop, processes=processes
+    )
     answers, miss = _answers(task, problem, lanes, bool(closed))
     if not answers:
         what = _("no linkage keeps everything that is required")
@@ -174,29 +183,31 @@ def _problem(wanted: Synthesis, targets: Targets) -> FitProblem:
     return FitProblem(targets, free, low, high, _hinges_of(wanted.constraints), kernel=SPHERE)
 
 
-def _hinges_of(constraints: Constraints) -> Hinges | None:
-    parts: list[Hinges] = []
-    if constraints.crank is not None:
-        parts.append(lambda variables, side: CRANK_MARGIN - spherical_crank_margins(variables[:, :9]))
-    if constraints.transmission is not None:
-        most = float(np.cos(constraints.transmission)) * (1 - 1e-9)
+@dataclass(frozen=True)
+class SphericalHinges:
+    """Constraints on the sphere as residuals that are positive where they do not hold."""
 
-        def transmission(variables: Array, side: Array) -> Array:
+    constraints: Constraints
+
+    def __call__(self, variables: Array, side: Array) -> Array:
+        """All of them (lanes, m)."""
+        constraints, parts = self.constraints, []
+        if constraints.crank is not None:
+            parts.append(CRANK_MARGIN - spherical_crank_margins(variables[:, :9]))
+        if constraints.transmission is not None:
+            most = float(np.cos(constraints.transmission)) * (1 - 1e-9)
             cosine = transmission_cosines(variables[:, :9])
-            return np.concatenate([cosine - most, -cosine - most], axis=1) + 1e-7
-
-        parts.append(transmission)
-    if constraints.length_ratio is not None:
-        ratio = float(np.log(constraints.length_ratio))
-
-        def length_ratio(variables: Array, side: Array) -> Array:
+            parts.append(np.concatenate([cosine - most, -cosine - most], axis=1) + 1e-7)
+        if constraints.length_ratio is not None:
+            ratio = float(np.log(constraints.length_ratio))
             logs = np.log(variables[:, [CRANK, COUPLER, ROCKER]])
-            return (logs[:, :, None] - logs[:, None, :]).reshape(len(logs), 9) - ratio + 1e-7
+            parts.append((logs[:, :, None] - logs[:, None, :]).reshape(len(logs), 9) - ratio + 1e-7)
+        return np.concatenate(parts, axis=1)
 
-        parts.append(length_ratio)
-    if not parts:
-        return None
-    return lambda variables, side: np.concatenate([part(variables, side) for part in parts], axis=1)
+
+def _hinges_of(constraints: Constraints) -> Hinges | None:
+    kept = (constraints.crank, constraints.transmission, constraints.length_ratio)
+    return SphericalHinges(constraints) if any(one is not None for one in kept) else None
 
 
 def _drawn_shapes(random: np.random.Generator, count: int, *, turning: bool) -> tuple[Array, Array]:

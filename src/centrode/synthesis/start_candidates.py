@@ -9,8 +9,23 @@ from __future__ import annotations
 import numpy as np
 
 from centrode.synthesis.curve_atlas import DENSE, PLACES, Atlas, at_equal_distances, atlas, descriptors
-from centrode.synthesis.four_bars import Array, Complex, coupler_motion, mirror_image, transform
-from centrode.synthesis.least_squares import PHASE, VARIABLES, FitLanes
+from centrode.synthesis.four_bars import (
+    COUPLER,
+    DX,
+    DY,
+    OX,
+    OY,
+    PX,
+    PY,
+    ROCKER,
+    Array,
+    Complex,
+    coupler_motion,
+    lengths,
+    mirror_image,
+    transform,
+)
+from centrode.synthesis.least_squares import PHASE, VARIABLES, FitLanes, Targets
 
 CANDIDATES = 500
 ARC_SHAPES = 5000
@@ -161,11 +176,17 @@ def _place_arc(
 
 def _best_place(linkage: Array, drawn: Complex, shape: Complex) -> tuple[Array, float]:
     """A linkage moved so that what it draws fits a shape best, and the angle by which it has been turned."""
-    centred = drawn - drawn.mean()
-    power = max(float((np.abs(centred) ** 2).sum()), 1e-300)
-    factor = ((shape - shape.mean()) * np.conj(centred)).sum() / power
-    shift = shape.mean() - factor * drawn.mean()
-    return transform(linkage, np.array([factor]), np.array([shift])), float(np.angle(factor))
+    factor, shift = _best_places(drawn[None], shape)
+    return transform(linkage, factor, shift), float(np.angle(factor[0]))
+
+
+def _best_places(drawn: Complex, shape: Complex) -> tuple[Complex, Complex]:
+    """Factors and shifts (lanes,) that bring drawn points (lanes, n) nearest to a shape (n,)."""
+    middle = drawn.mean(axis=1, keepdims=True)
+    centred = drawn - middle
+    power = np.maximum((np.abs(centred) ** 2).sum(axis=1), 1e-300)
+    factor = ((shape - shape.mean()) * np.conj(centred)).sum(axis=1) / power
+    return factor, shape.mean() - factor * middle[:, 0]
 
 
 def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: int = CANDIDATES) -> FitLanes:
@@ -231,3 +252,44 @@ def random_candidates(
     crank = np.unwrap(turn[np.argmin(distance, axis=1)], axis=1)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
     return FitLanes(variables, side, crank, sense)
+
+
+def nearby_candidates(
+    targets: Targets, lanes: FitLanes, distance: float, count: int, random: np.random.Generator
+) -> FitLanes:
+    """Linkages near given ones, each where it fits best with the crank angles that it has: `count` of each.
+
+    What Grashof's rule compares (b + c - d - a and the like) keeps its sign, so that a crank goes on turning fully,
+    and links of thousands of units with small differences do not fall apart.
+
+    Parameters
+    ----------
+    distance : standard deviation of the logarithms of these differences and of the coupler point's place
+    """
+    which = np.repeat(np.arange(len(lanes.side)), count)
+    varied = lanes.take(which)
+    rows = varied.variables[:, :9]
+    ground, crank, coupler, rocker = lengths(rows).T
+    total = (ground + crank + coupler + rocker) / 2
+    scale = np.exp(distance * random.normal(size=(len(which), 3)))
+    of_ground, of_coupler, of_rocker = (
+        (total - crank)[:, None] - np.column_stack([ground, coupler, rocker])
+    ).T * scale.T
+    made = (
+        np.column_stack([of_coupler + of_rocker, of_ground + of_rocker, of_ground + of_coupler])
+        + crank[:, None]
+    )
+    frame = (rows[:, DX] - rows[:, OX] + 1j * (rows[:, DY] - rows[:, OY])) * made[:, 0] / ground
+    rows[:, DX], rows[:, DY] = rows[:, OX] + frame.real, rows[:, OY] + frame.imag
+    rows[:, COUPLER], rows[:, ROCKER] = made[:, 1], made[:, 2]
+    place = (rows[:, PX] + 1j * rows[:, PY]) * np.exp(
+        distance * (random.normal(size=len(which)) + 1j * random.normal(size=len(which)))
+    )
+    rows[:, PX], rows[:, PY] = place.real, place.imag
+    motion = coupler_motion(rows, varied.crank + varied.variables[:, PHASE, None], varied.side)
+    closes = (motion.radicand > 0).all(axis=1) & (made > 0).all(axis=1)
+    if targets.crank is None and targets.directions is None:
+        factor, shift = _best_places(motion.point, np.asarray(targets.points, dtype=np.complex128))
+        rows[:] = transform(rows, factor, shift)
+        varied.crank += np.angle(factor)[:, None]
+    return varied.take(np.flatnonzero(closes))

@@ -13,6 +13,7 @@ from centrode.synthesis.function_synthesis import function_answers
 from centrode.synthesis.mechanism_synthesis import mechanism_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
+from centrode.synthesis.processes import check_jobs, processes
 from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SPHERICAL, SYNTHESES, SynthesisTask
 from centrode.synthesis.spherical_synthesis import spherical_answers
 from centrode.synthesis.stroke_synthesis import stroke_answers
@@ -48,6 +49,7 @@ def synthesise(
     source: SynthesisSource,
     progress: Callable[[float], None] = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
+    jobs: int = 1,
 ) -> SynthesisResults:
     """Mechanisms that do what is wanted, the best first.
 
@@ -56,6 +58,8 @@ def synthesise(
     source : path of a TOML file with a table [synthesis], its tables, or what `read_synthesis` made of them
     progress : called with the share that is done
     stop : once it is true the search ends with what there is
+    jobs : processes on which paths, poses in the least squares sense and mechanisms of files are searched; the answers
+        are those of one
 
     Returns
     -------
@@ -81,14 +85,18 @@ def synthesise(
     """
     task = task_of(source)
     wanted = task.synthesis
+    check_jobs(jobs)
     if task.mechanism is not None:
-        return mechanism_answers(task, progress, stop)
+        with processes(jobs) as several:
+            return mechanism_answers(task, progress, stop, several)
     if wanted.kind == "motion" and wanted.topology in FOUR_BARS and is_exact(task):
         return pose_answers(task, progress, stop)
     if wanted.kind in ("path", "motion") and wanted.topology in FOUR_BARS:
-        return path_answers(task, progress, stop)
+        with processes(jobs) as several:
+            return path_answers(task, progress, stop, several)
     if wanted.topology in SPHERICAL and wanted.kind != "strokes":
-        return spherical_answers(task, progress, stop)
+        with processes(1 if wanted.kind == "function" else jobs) as several:
+            return spherical_answers(task, progress, stop, several)
     if wanted.kind == "strokes":
         return stroke_answers(task)
     if wanted.kind == "function" and wanted.topology in FOUR_BARS:

@@ -107,7 +107,10 @@ SYNTHESIS = Topic(
     compute=Lazily("centrode.synthesis.synthesise", "synthesise"),
     result=Lazily("centrode.synthesis.answers", "SynthesisResults"),
     view=Lazily("centrode.views.synthesis", "sheet"),
-    subject="synthesis",
+    subject="request",
+    document=InDocuments(
+        chapters=(ChapterOfTopic("synthesis", mark("Synthesis of the mechanism")),), instants=False
+    ),
 )
 
 IMPROVEMENT = Topic(

@@ -54,6 +54,7 @@ COMMANDS = (
 """As `centrode --help` lists them."""
 
 CHAPTERS = (
+    "synthesis",
     "data",
     "motion",
     "words",

@@ -255,7 +255,7 @@ class Topic:
     command : None where only documents and Python have the topic
     document : its chapters
     subject : "mechanism"; "cam": those have one command together, with the options of all of them; "gear pair";
-        "gear train"; "synthesis": a request that mechanisms answer; "mechanisms": many of one structure, whose
+        "gear train"; "request": one of a synthesis, which mechanisms answer; "mechanisms": many of one structure, whose
         commands read a file of their own and go on with what is in a folder
     flag : option of that command without which it leaves the topic out
     restore : (mechanism or cam, dataset) -> result, of a dataset whose attribute `topic` is the name; None where the
@@ -273,7 +273,7 @@ class Topic:
     concerns: Lazily | None = None
     command: Command | None = None
     document: InDocuments = InDocuments()
-    subject: Literal["mechanism", "cam", "gear pair", "gear train", "mechanisms", "synthesis"] = "mechanism"
+    subject: Literal["mechanism", "cam", "gear pair", "gear train", "mechanisms", "request"] = "mechanism"
     flag: str = ""
     restore: Lazily | None = None
     value: Lazily | None = None

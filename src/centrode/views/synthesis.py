@@ -25,6 +25,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Counted, Name, Number, Sentence, Symbol, Text, Title
+from centrode.views.synthesis_chapter import synthesis_chapter
 
 if TYPE_CHECKING:
     from centrode.synthesis.answers import Answer, SynthesisResults
@@ -52,14 +53,22 @@ def sheet(results: SynthesisResults) -> Sheet:
     facts = tuple(_facts(results))
     table = _table(results)
     pictures = dict(_pictures(results))
+    construction, notes = tuple(_construction(results)), tuple(_notes(results))
     return Sheet(
         facts=facts,
         scalars=_scalars(results),
         tables=Deferred({"answers": lambda: table, **_curve_tables(results)}),
         pictures=Deferred({name: lambda picture=picture: picture for name, picture in pictures.items()}),  # type: ignore[misc]
-        printed=(table, *_construction(results)),
+        printed=(table, *construction),
         files=dict(_files(results)),
-        notes=tuple(_notes(results)),
+        notes=notes,
+        chapters=Deferred(
+            {
+                "synthesis": lambda: synthesis_chapter(
+                    results, facts, table, construction, pictures.keys(), notes
+                )
+            }
+        ),
     )
 
 

@@ -141,6 +141,12 @@ function OpenWindow() {
               <ul><li><a class="template" data-do="gears" href={`/gears?${new URLSearchParams({ language: language.value, token })}`} target="_blank">{say("gear_pair")}</a></li></ul>
             </div>
           )}
+          {`${say("synthesis_lead")} ${say("synthesis")}`.toLowerCase().includes(sought) && (
+            <div>
+              <h4>{say("synthesis")}</h4>
+              <ul><li><a class="template" data-do="synthesis" href={`/synthesis?${new URLSearchParams({ language: language.value, token })}`}>{say("synthesis_lead")}</a></li></ul>
+            </div>
+          )}
         </div>
       </section>
     </Window>

@@ -1,10 +1,11 @@
-// The page of syntheses: a path or poses drawn here, four-bar linkages for it that the server finds, one of them for the workbench.
+// The page of syntheses: a path or poses drawn here, a function or strokes written, mechanisms for it that the server finds, one of them
+// for the workbench.
 import { pack } from "./share";
 import { typeset } from "./typeset";
 
 type Point = [number, number];
 type Target = [number, number, number];
-interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; points: Record<string, Point>; text: string }
+interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; points: Record<string, Point>; fixed: string[]; links: string[][]; text: string }
 type Answer = Record<string, any> & { id: number; error?: { message: string; repair: string } };
 
 const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')!.content || "{}") as { token?: string; refused?: string };
@@ -79,10 +80,10 @@ function spread(line: Point[], closed: boolean): Point[] {
 
 // The linkage in its first position with what its point traces.
 function pictured(one: Found): SVGElement[] {
-  const { O, A, B, D, P } = one.points as Record<string, Point>, coupler = [A, B, P].filter(Boolean) as Point[];
+  const bars = one.links.map((names) => names.map((name) => one.points[name]!)).filter((line) => line.length > 1);
   return [
-    draw("path", { class: "links", d: path([O!, A!]) + path([D!, B!]) + path(coupler, true) }),
-    draw("path", { class: "traced", d: path(one.curve) }),
+    draw("path", { class: "links", d: bars.map((line) => path(line, line.length > 2)).join("") }),
+    ...(one.curve.length ? [draw("path", { class: "traced", d: path(one.curve) })] : []),
   ];
 }
 function box(points: Point[], margin: number): [number, number, number, number] {
@@ -105,9 +106,21 @@ async function begin(): Promise<void> {
   lost = words.lost!;
   document.title = `${words.title} – centrode`;
 
-  const kind = make("select", { id: "kind" }, ...["path", "motion"].map((one) => make("option", { value: one, textContent: words[one]! })));
+  const kind = make("select", { id: "kind" }, ...["path", "motion", "function", "strokes"].map((one) => make("option", { value: one, textContent: words[one]! })));
   const check = (id: string, checked: boolean) => make("input", { id, type: "checkbox", checked });
   const closed = check("closed", true), crank = check("crank", true), order = check("order", true);
+  const number = (id: string, value: string, properties: Partial<HTMLInputElement> = {}) => make("input", { id, type: "number", step: "any", value, ...properties });
+  const choice = (id: string, names: string[], word: (name: string) => string) => make("select", { id }, ...names.map((one) => make("option", { value: one, textContent: words[word(one)]! })));
+  const labelled = (field: HTMLElement, word: string, kinds: string) => {
+    const row = make("label", {}, words[word]!, field);
+    row.dataset.kinds = kinds; // of requests that have this field
+    return row;
+  };
+  const formula = make("input", { id: "formula", type: "text", value: "log(x)/log(10)", spellcheck: false });
+  const from = number("x_from", "1"), to = number("x_to", "2"), turns = number("swing_crank", "60"), swings = number("swing_rocker", "90");
+  const topology = choice("topology", ["crank-rocker", "slider-crank-offset", "shaper", "whitworth-quick-return", "six-bar-press"], (one) => one);
+  const stroke = number("stroke", "100", { min: "0" }), swing = number("swing", "40", { min: "0" }), slow = number("time_ratio", "1.25", { min: "1" });
+  const trade = choice("trade_off", ["none", "size", "transmission"], (one) => `trade_off_${one}`);
   const transmission = make("input", { id: "transmission", type: "number", min: "0", max: "89", step: "1" });
   const ratio = make("input", { id: "length_ratio", type: "number", min: "1", step: "0.5", value: "6" });
   const size = make("input", { id: "size", type: "number", min: "0", step: "10", value: "500" });
@@ -122,12 +135,20 @@ async function begin(): Promise<void> {
   const list = make("ul", { id: "answers" });
   const insert = make("button", { type: "button", id: "insert", className: "first", textContent: words.insert!, disabled: true });
   const checkRow = (box: HTMLInputElement, word: string) => make("label", { className: "check" }, box, word);
-  const closedRow = checkRow(closed, words.closed!);
+  const closedRow = checkRow(closed, words.closed!), crankRow = checkRow(crank, words.crank!), orderRow = checkRow(order, words.order!);
+  closedRow.dataset.kinds = "path";
+  crankRow.dataset.kinds = orderRow.dataset.kinds = "path motion";
+  const rowsRow = make("label", { className: "rows" }, rowsName, rows);
+  rowsRow.dataset.kinds = "path motion function";
   root.append(
     make("section", {}, make("h1", { textContent: words.title! }), make("p", { textContent: words.lead! }),
-      make("label", {}, words.wanted!, kind), closedRow, checkRow(crank, words.crank!), checkRow(order, words.order!),
-      make("label", {}, words.transmission!, transmission), make("label", {}, words.length_ratio!, ratio), make("label", {}, words.most_size!, size),
-      make("label", { className: "rows" }, rowsName, rows),
+      make("label", {}, words.wanted!, kind),
+      labelled(topology, "topology", "strokes"), labelled(stroke, "wanted_stroke", "strokes"), labelled(swing, "wanted_swing", "strokes"), labelled(slow, "wanted_time_ratio", "strokes"),
+      labelled(formula, "formula", "function"), labelled(from, "x_from", "function"), labelled(to, "x_to", "function"),
+      labelled(turns, "swing_crank", "function"), labelled(swings, "swing_rocker", "function"),
+      closedRow, crankRow, orderRow,
+      labelled(transmission, "transmission", "path motion function strokes"), labelled(ratio, "length_ratio", "path motion"), labelled(size, "most_size", "path motion"),
+      labelled(trade, "trade_off", "path"), rowsRow,
       make("div", { className: "acts" }, search, stop, clear), share, said,
       make("a", { href: "/", textContent: words.workbench!, id: "workbench" })),
     make("section", {}, make("h2", { textContent: words.drawing! }), canvas, hint),
@@ -135,31 +156,31 @@ async function begin(): Promise<void> {
 
   let targets: Target[] = [], found: Found[] = [], shown = -1, dragged: Point[] | null = null;
   let cross: Target = [0, 0, 0];
-  const poses = (): boolean => kind.value === "motion";
+  const poses = (): boolean => kind.value === "motion", draws = (): boolean => poses() || kind.value === "path";
   const round = (value: number): number => Math.round(value * 100) / 100;
 
   const paint = (): void => {
     const one = found[shown], base: Point[] = [[-WIDE / 2, -TALL / 2], [WIDE / 2, TALL / 2]];
-    const view = one ? box([...base, ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
+    const view = one ? box([...(draws() ? base : []), ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
     canvas.setAttribute("viewBox", view.join(" "));
     const unit = Math.max(view[2] / WIDE, view[3] / TALL);
     const lines = [];
-    for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
-    for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
+    if (draws()) for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
+    if (draws()) for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
     const spots = targets.map(([x, y]) => [x, y] as Point);
     const parts: SVGElement[] = [draw("path", { class: "grid", d: lines.join("") })];
     if (one) parts.push(...pictured(one));
     if (dragged) parts.push(draw("path", { class: "wanted", d: path(dragged) }));
-    if (!poses() && spots.length > 1) parts.push(draw("path", { class: "wanted", d: path(spots, closed.checked) }));
-    for (const [x, y, turn] of targets) {
+    if (kind.value === "path" && spots.length > 1) parts.push(draw("path", { class: "wanted", d: path(spots, closed.checked) }));
+    for (const [x, y, turn] of draws() ? targets : []) {
       const along: Point = [Math.cos((turn * Math.PI) / 180) * 12 * unit, Math.sin((turn * Math.PI) / 180) * 12 * unit];
       if (poses()) parts.push(draw("path", { class: "pose", d: path([[x, y], [x + along[0], y + along[1]]]) }));
       parts.push(draw("circle", { class: "target", cx: x, cy: -y, r: 1.6 * unit }));
     }
     if (one) {
-      for (const [name, [x, y]] of Object.entries(one.points)) parts.push(draw("circle", { class: name === "O" || name === "D" ? "fixed" : "hinge", cx: x, cy: -y, r: 1.7 * unit }));
+      for (const [name, [x, y]] of Object.entries(one.points)) parts.push(draw("circle", { class: one.fixed.includes(name) ? "fixed" : "hinge", cx: x, cy: -y, r: 1.7 * unit }));
     }
-    if (document.activeElement === canvas) {
+    if (draws() && document.activeElement === canvas) {
       const [x, y, turn] = cross, size = 4 * unit;
       parts.push(draw("path", { class: "cross", d: `M${x - size} ${-y}h${2 * size}M${x} ${-y - size}v${2 * size}` }));
       if (poses()) parts.push(draw("path", { class: "cross", d: path([[x, y], [x + 12 * unit * Math.cos((turn * Math.PI) / 180), y + 12 * unit * Math.sin((turn * Math.PI) / 180)]]) }));
@@ -185,10 +206,19 @@ async function begin(): Promise<void> {
     forget();
     paint();
   };
+  // A rocker has a swing, every other output of strokes a way of its slider.
+  const choose = (): void => {
+    if (kind.value !== "strokes") return;
+    const rocks = topology.value === "crank-rocker";
+    swing.parentElement!.hidden = !rocks;
+    stroke.parentElement!.hidden = rocks;
+  };
   const change = (): void => {
-    hint.textContent = words[poses() ? "hint_motion" : "hint_path"]!;
-    rowsName.textContent = words[poses() ? "targets_motion" : "targets"]!;
-    closedRow.hidden = poses();
+    hint.textContent = words[`hint_${kind.value}`]!;
+    rowsName.textContent = words[kind.value === "path" ? "targets" : `targets_${kind.value}`] ?? "";
+    for (const row of root.querySelectorAll<HTMLElement>("[data-kinds]")) row.hidden = !row.dataset.kinds!.split(" ").includes(kind.value);
+    choose();
+    clear.hidden = !draws();
     put([]);
   };
 
@@ -198,6 +228,7 @@ async function begin(): Promise<void> {
     return [round(at.x), round(-at.y)];
   };
   canvas.addEventListener("pointerdown", (event) => {
+    if (!draws()) return;
     canvas.setPointerCapture(event.pointerId);
     dragged = [spot(event)];
   });
@@ -227,6 +258,7 @@ async function begin(): Promise<void> {
   canvas.addEventListener("focus", paint);
   canvas.addEventListener("blur", paint);
   canvas.addEventListener("keydown", (event) => {
+    if (!draws()) return;
     const step = event.shiftKey ? 4 * STEP : STEP, [x, y, turn] = cross;
     const moved: Record<string, Target> = {
       ArrowLeft: [x - step, y, turn], ArrowRight: [x + step, y, turn], ArrowUp: [x, y + step, turn], ArrowDown: [x, y - step, turn],
@@ -258,6 +290,28 @@ async function begin(): Promise<void> {
     }));
   };
 
+  // What the fields ask for, as a table [synthesis].
+  const request = (): Record<string, unknown> => {
+    const degrees = (field: HTMLInputElement): string => `${field.value} deg`;
+    const angle = Number(transmission.value) > 0 ? { transmission: degrees(transmission) } : {};
+    if (kind.value === "strokes") {
+      const own = topology.value === "crank-rocker" ? { swing: degrees(swing) } : { stroke: `${stroke.value} mm` };
+      return { kind: "strokes", topology: topology.value, ...own, time_ratio: Number(slow.value), ...angle };
+    }
+    if (kind.value === "function") {
+      const table = targets.length ? { targets: targets.map(([turn, other]) => [`${turn} deg`, `${other} deg`]) }
+        : { formula: formula.value, x: [Number(from.value), Number(to.value)], swings: [degrees(turns), degrees(swings)] };
+      return { kind: "function", ...table, constraints: angle };
+    }
+    const constraints: Record<string, unknown> = { order: order.checked, ...angle };
+    if (crank.checked) constraints.crank = "OA";
+    if (Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
+    if (Number(size.value) > 0) constraints.size = [`${size.value} mm`, `${size.value} mm`];
+    const places = targets.map(([x, y, turn]) => [`${x} mm`, `${y} mm`, ...(poses() ? [`${turn} deg`] : [])]);
+    if (poses()) return { kind: "motion", targets: places, constraints };
+    return { kind: "path", targets: places, constraints, closed: closed.checked, ...(trade.value === "none" ? {} : { trade_off: trade.value }) };
+  };
+
   let ticket = "", wantsEnd = false;
   const follow = async (mine: string): Promise<void> => {
     while (ticket === mine) {
@@ -278,15 +332,8 @@ async function begin(): Promise<void> {
     search.disabled = true;
     share.hidden = stop.hidden = false;
     stop.disabled = false;
-    const constraints: Record<string, unknown> = { order: order.checked };
-    if (crank.checked) constraints.crank = "OA";
-    if (Number(transmission.value) > 0) constraints.transmission = `${transmission.value} deg`;
-    if (Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
-    if (Number(size.value) > 0) constraints.size = [`${size.value} mm`, `${size.value} mm`];
-    const places = targets.map(([x, y, turn]) => [`${x} mm`, `${y} mm`, ...(poses() ? [`${turn} deg`] : [])]);
-    const wanted = { kind: kind.value, targets: places, constraints, ...(poses() ? {} : { closed: closed.checked }) };
     void follow(mine);
-    const got = await line.ask({ do: "synthesise", ticket: mine, wanted });
+    const got = await line.ask({ do: "synthesise", ticket: mine, wanted: request() });
     ticket = "";
     search.disabled = false;
     share.hidden = stop.hidden = true;
@@ -307,6 +354,9 @@ async function begin(): Promise<void> {
   clear.addEventListener("click", () => put([]));
   rows.addEventListener("input", read);
   closed.addEventListener("change", () => { forget(); paint(); });
+  for (const field of [formula, from, to, turns, swings, stroke, swing, slow]) field.addEventListener("input", () => { forget(); paint(); });
+  topology.addEventListener("change", () => { choose(); forget(); paint(); });
+  trade.addEventListener("change", () => { forget(); paint(); });
   kind.addEventListener("change", change);
   change();
 }
