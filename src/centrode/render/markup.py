@@ -107,8 +107,8 @@ class MarkupPage(PrintSpelling):
             if isinstance(block, Section):
                 yield self.heading(self.text(block.title))
                 yield from map(self._block, block.blocks)
-            else:
-                yield self._block(block)
+            elif text := self._block(block):
+                yield text
         yield from map(self.paragraph, notes_of(sheet, self))
 
     def _facts(self, facts: Sequence[Fact]) -> str:

@@ -61,6 +61,8 @@ def sheet_text(sheet: Sheet, display: Display) -> str:
     parts += [facts_text(sheet.facts, display)] if sheet.facts else []
     for block in sheet.printed:
         text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
+        if not text:
+            continue  # what a page plays
         if isinstance(block, Items) and parts:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
