@@ -35,13 +35,18 @@ SHOWN = {
     "imported-drawing": ("A DXF drawing and the mechanism that is read from it", "import.md"),
     "in-mujoco": ("A five-bar linkage that falls, in MuJoCo", "export.md#mujoco"),
     "sphere-in-mujoco": ("Hooke's joint, driven in MuJoCo", "export.md#mujoco"),
-    "in-freecad": ("The sketch of a macro for FreeCAD, and its bars in six positions", "export.md#freecad"),
+    "in-freecad": (
+        "The sketch of a macro for FreeCAD, and its bars in positions of the motion",
+        "export.md#freecad",
+    ),
 }
 """Name of the picture -> its title, and the page that tells how it is made."""
 HEAD = """## From and into other programs
 
 Drawings that `centrode import` reads, models and macros that `centrode export` writes.
 """
+FADING = 0.55
+"""How much of what stood there before is left at the next moment."""
 INK, PALE = "#20405C", "#9BB8D3"
 
 
@@ -86,16 +91,16 @@ def imported_drawing() -> Image.Image:
 def in_mujoco() -> Image.Image:
     """A free motion: positions over one another, the later the darker."""
     mechanism = ct.example(FALLING)
-    return _rendered(mechanism, free=True, seconds=(0.0, 0.25, 0.5), view=(0.0, -90.0))
+    return _rendered(mechanism, free=True, seconds=(0.0, 0.25, 0.5), view=(90.0, -90.0), far=1.35)
 
 
 def sphere_in_mujoco() -> Image.Image:
     """Positions of a driven joint."""
-    return _rendered(ct.example(TURNING), free=False, seconds=(0.6,), view=(125.0, -25.0))
+    return _rendered(ct.example(TURNING), free=False, seconds=(0.6,), view=(150.0, -35.0), far=0.95)
 
 
 def _rendered(
-    mechanism: ct.Mechanism, *, free: bool, seconds: tuple[float, ...], view: tuple[float, float]
+    mechanism: ct.Mechanism, *, free: bool, seconds: tuple[float, ...], view: tuple[float, float], far: float
 ) -> Image.Image:
     """What MuJoCo shows of a model at moments, laid over one another."""
     text = mjcf_text(mechanism, ct.motion(mechanism, at=[initial_place(mechanism)]), free=free)
@@ -105,9 +110,8 @@ def _rendered(
     mujoco.mj_forward(model, data)
     camera = mujoco.MjvCamera()
     mujoco.mjv_defaultFreeCamera(model, camera)
-    # seen along z in the plane, as it is drawn elsewhere
-    camera.azimuth, camera.elevation = (90.0 if view[1] == -90.0 else view[0]), view[1]
-    camera.distance *= 0.85
+    camera.azimuth, camera.elevation = view
+    camera.distance *= far
     whole: Any = None
     with mujoco.Renderer(model, PIXELS, PIXELS) as renderer:
         for moment in seconds:
@@ -115,14 +119,14 @@ def _rendered(
                 mujoco.mj_step(model, data)
             renderer.update_scene(data, camera)
             seen = renderer.render().astype(float)
-            whole = seen if whole is None else np.maximum(0.6 * whole, seen)
+            whole = seen if whole is None else np.minimum(255.0 - FADING * (255.0 - whole), seen)
     return Image.fromarray(whole.astype(np.uint8))
 
 
 def in_freecad() -> Image.Image:
-    """The lines of the sketch with their fixed points, and where the bars stand in six positions."""
+    """The lines of the sketch with their fixed points, and where the bars stand in positions of the motion."""
     names: dict[str, Any] = {}
-    exec(freecad_macro(SKETCHED, 7).partition("\nimport math\n")[0], names)
+    exec(freecad_macro(SKETCHED, 5).partition("\nimport math\n")[0], names)
     figure = Figure(figsize=(INCHES, INCHES))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     places = names["PLACES"]

@@ -77,7 +77,7 @@ def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
         (("export", "third-class-triad", "--python"), "platform"),
         (("export", "crank-rocker", "--c", "--vary", "links.XY.length"), "XY"),
         (("export", "crank-rocker", "--matlab", "--out", "my crank.m"), "my_crank.m"),
-        (("export", "hookes-joint"), "planar linkages"),
+        (("export", "spherical-crank-rocker"), "ring and a point mass"),
         (("export", "cam-from-curvature"), "cam"),
         (("export", "nothing"), "no such file"),
     ):

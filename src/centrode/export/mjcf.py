@@ -190,6 +190,16 @@ def _actuator(
                 one.set("armature", number(ROTOR * scale))
 
 
+def _add_light(root: ET.Element) -> None:
+    """Light from the eye and a white sky: links are thin, and dark on black as MuJoCo shows them by itself."""
+    visual = ET.SubElement(root, "visual")
+    ET.SubElement(visual, "headlight", ambient="0.6 0.6 0.6", diffuse="0.5 0.5 0.5", specular="0 0 0")
+    white = {"rgb1": "1 1 1", "rgb2": "1 1 1", "width": "8", "height": "48"}
+    ET.SubElement(
+        ET.SubElement(root, "asset"), "texture", {"type": "skybox", "builtin": "flat", "name": "sky", **white}
+    )
+
+
 def _add_bodies(pose: ModelPose, root: ET.Element, world: ET.Element) -> None:
     """Points of the frame, bodies, and the constraints of loops and gears."""
     for point in pose.mechanism.frame.points:
@@ -281,6 +291,7 @@ def _document(pose: ModelPose, loads: ModelLoads, free: bool, pace: float) -> st
     gravity = (*(pose.mechanism.gravity or (0.0, 0.0)), 0.0)[:3]
     ET.SubElement(root, "option", gravity=numbers(gravity), timestep=number(pose.step),
                   integrator="RK4" if free else "implicitfast", tolerance="1e-12", iterations="200")  # fmt: skip
+    _add_light(root)
     solref = f"{number(3 * pose.step)} 1"
     defaults = ET.SubElement(root, "default")
     ET.SubElement(defaults, "equality", solref=solref, solimp=HARD)

@@ -72,6 +72,8 @@ PARALLEL = 1e-9
 """Sine of the angle below which two axes are one."""
 ROUNDED = 1e-12
 """Part of a tensor's trace that is added to its moments."""
+PIN = (0.94, 1.06)
+"""Where a pin through a hinge begins and ends, in the radius."""
 CHORDS = 8
 """Straight pieces that an arc is drawn with."""
 
@@ -299,7 +301,7 @@ def _pin_place(pose: SpherePose, closure: Pair) -> Vector:
 
 
 def _draw_arcs(pose: SpherePose, body: ET.Element, name: str) -> None:
-    """Chords of the arcs between the points of a link, and a site for each point."""
+    """Chords of the arcs between the points of a link, pins through these, and a site for each."""
     points = list(pose.mechanism.points_of(name))
     for one, other in outline(points):
         first, last = (np.array(pose.places[point]) for point in (one, other))
@@ -312,6 +314,9 @@ def _draw_arcs(pose: SpherePose, body: ET.Element, name: str) -> None:
             ET.SubElement(body, "geom", type="capsule", size=number(THIN * pose.size),
                           fromto=numbers([float(x) for x in (*start, *end)]))  # fmt: skip
     for point in points:
+        ends = [share * np.array(pose.at(point)) for share in PIN]
+        ET.SubElement(body, "geom", type="capsule", size=number(THIN * pose.size),
+                      fromto=numbers([float(x) for end in ends for x in end]))  # fmt: skip
         ET.SubElement(body, "site", name=f"{name}.{point}", pos=numbers(pose.at(point)))
 
 
