@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ import xarray as xr
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.trajectory import trajectory_points
+from centrode.dynamics.sensitivities.event_derivatives import ContactNumbers
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
 from centrode.dynamics.simulation.multibody_motion import multibody_setting
 from centrode.dynamics.state import length_unit
@@ -49,12 +50,30 @@ class MotionGradients:
     paths : of the numbers
     motion : coordinates and their derivatives
     position, velocity : (n, k, points, axes) derivatives of places and velocities of points
+    event_position, event_velocity : (events, k, points, axes), of the states at the events themselves, before them
     """
 
     paths: tuple[str, ...]
     motion: ChangedMotion
     position: Array
     velocity: Array
+    event_position: Array
+    event_velocity: Array
+
+
+class PreparedChange(NamedTuple):
+    """How what is prepared changes with a number of the description.
+
+    Attributes
+    ----------
+    numbers : of the equations, by their variables
+    start : of the initial state
+    contacts : of the numbers of contacts
+    """
+
+    numbers: dict[str, float]
+    start: InitialState
+    contacts: ContactNumbers
 
 
 def motion_gradients(
@@ -80,12 +99,28 @@ def motion_gradients(
     setting = multibody_setting(described, settings)
     start = setting.free.initial(setting.speeds, setting.start)
     changes = [_change(described, setting.free, path) for path in paths]
-    equations = VariationalEquations(setting.free, tuple(numbers for numbers, _state in changes))
+    numbers = tuple(one.numbers for one in changes)
+    equations = VariationalEquations(setting.free, numbers, tuple(one.contacts for one in changes))
     motion = equations.motion(
-        start, [state for _numbers, state in changes], times, settings.tolerance, executor
+        start, [one.start for one in changes], times, settings.tolerance, executor, setting.duration
     )
-    position, velocity = _of_points(setting.free, motion, [numbers for numbers, _state in changes])
-    return MotionGradients(tuple(paths), motion, position, velocity)
+    position, velocity = _of_points(setting.free, motion, numbers)
+    return MotionGradients(
+        tuple(paths), motion, position, velocity, *_of_points(setting.free, at_events(motion), numbers)
+    )
+
+
+def at_events(motion: ChangedMotion) -> ChangedMotion:
+    """A motion at its events instead of its instants: its derivatives are those of the states at the events."""
+    size, count = motion.coordinates.shape[1], motion.coordinate_changes.shape[1]
+    events = motion.events
+    return ChangedMotion(
+        np.array([one.event.time for one in events]),
+        np.array([one.coordinates for one in events]).reshape(len(events), size),
+        np.array([one.speeds for one in events]).reshape(len(events), size),
+        np.array([one.coordinate_changes for one in events]).reshape(len(events), count, size),
+        np.array([one.speed_changes for one in events]).reshape(len(events), count, size),
+    )
 
 
 def _prepared(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
@@ -95,7 +130,7 @@ def _prepared(described: Mechanism, path: str, value: float) -> tuple[FreeMotion
     return setting.free, setting.free.initial(setting.speeds, setting.start)
 
 
-def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str, float], InitialState]:
+def _change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange:
     """How the numbers of the equations and the initial state change with a number of the description."""
     value = value_at(described, path)
     step = STEP * (abs(value) or 1.0)
@@ -103,6 +138,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
     slopes = np.zeros(len(variables.parameters))
     size = len(free.coordinates)
     places, speeds = np.zeros(size), np.zeros(size)
+    contacts = ContactNumbers(*np.zeros((len(ContactNumbers._fields), len(free.equations.contacts))))
     for count, weight in WEIGHTS:
         for sense in (1.0, -1.0):
             other, state = _prepared(described, path, value + sense * count * step)
@@ -113,6 +149,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
             slopes += share * variables.values(other.equations)[:, 0]
             places += share * state.coordinates
             speeds += share * state.speeds
+            contacts = contacts.moved(ContactNumbers.of(other.equations), share)
     # what rounding makes of numbers that do not change is no change
     here = np.abs(variables.values(free.equations)[:, 0])
     changes = {
@@ -120,7 +157,13 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
         for name, x, size_of in zip(variables.parameters, slopes, here, strict=True)
         if abs(x) * step > 1e-13 * size_of and abs(x) > 0.0
     }
-    return changes, InitialState(places, speeds)
+    # what rounding leaves of numbers that stay is nothing
+    own = ContactNumbers.of(free.equations)
+    kept = (
+        np.where(np.abs(one) * step > 1e-13 * np.abs(number), one, 0.0)
+        for one, number in zip(contacts, own, strict=True)
+    )
+    return PreparedChange(changes, InitialState(places, speeds), ContactNumbers(*kept))
 
 
 def _of_points(
