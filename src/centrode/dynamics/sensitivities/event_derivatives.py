@@ -398,7 +398,10 @@ class EventDerivatives:
         names = self.integration.names
         for part in (names.part(names.coordinates), names.part(names.speeds)):
             size = self._sizes[part]
-            if np.max(np.abs(found - transition.behind[1 : 1 + self._count])[part] / size, initial=0.0) > SAME:
+            if (
+                np.max(np.abs(found - transition.behind[1 : 1 + self._count])[part] / size, initial=0.0)
+                > SAME
+            ):
                 what = _("the event at {time:.9g} s has no derivatives here").format(time=transition.time)
                 raise NotComputedYet("gradients", what, _("compare motions whose numbers differ a little"))
 

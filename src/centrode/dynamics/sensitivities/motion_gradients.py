@@ -100,7 +100,12 @@ def motion_gradients(
     start = setting.free.initial(setting.speeds, setting.start)
     changes = [_change(described, setting.free, path) for path in paths]
     numbers = tuple(one.numbers for one in changes)
-    equations = VariationalEquations(setting.free, numbers, tuple(one.contacts for one in changes))
+    equations = VariationalEquations(
+        setting.free,
+        numbers,
+        tuple(one.contacts for one in changes),
+        tuple(value_at(described, path) for path in paths),
+    )
     motion = equations.motion(
         start, [one.start for one in changes], times, settings.tolerance, executor, setting.duration
     )

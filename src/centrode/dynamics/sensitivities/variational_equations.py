@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ import numpy.typing as npt
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.integration import ATTEMPTS, MOST_STEPS
-from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS, GUARD, PASSED
+from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS, GUARD, LENGTH, PASSED, RATE, TOLERANCE
 from centrode.dynamics.forward_dynamics.motion_steps import Event, MotionSteps, Transition
 from centrode.dynamics.sensitivities.event_derivatives import (
     ContactNumbers,
@@ -34,9 +34,18 @@ from centrode.dynamics.sensitivities.event_derivatives import (
 )
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.numerics.expressions import as_node, variable
+from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import directional_derivatives
-from centrode.numerics.initial_value_problems import END, HEADER, STEP, TIME, InitialValueProblem
+from centrode.numerics.initial_value_problems import (
+    BEFORE,
+    END,
+    HEADER,
+    OF_FIFTH,
+    OF_THIRD,
+    STEP,
+    TIME,
+    InitialValueProblem,
+)
 from centrode.numerics.integrators import integrator_of
 from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
@@ -44,19 +53,35 @@ from centrode.numerics.scans import evaluate
 Array: TypeAlias = npt.NDArray[np.float64]
 
 
+CHANGE_TOLERANCE = 1e-11
+"""The least share of all changes along a direction by which a step may err: shorter steps would be lost in rounding."""
+
+
+CHANGE_FLOOR = 1e-6
+"""Changes of the motion, where a number changes by its own size, below which errors are not compared with them."""
+
+
 def change_of(name: str, direction: int) -> str:
     """Name of the derivative of a quantity along a direction."""
     return f"change {direction} of {name}"
 
 
+def floor_of(direction: int) -> str:
+    """Name of what is added to the changes along a direction where an error is compared with them."""
+    return f"floor {direction}"
+
+
 def variational_problem(
-    problem: InitialValueProblem, directions: Sequence[Sequence[str]]
+    problem: InitialValueProblem,
+    directions: Sequence[Sequence[str]],
+    compared: Sequence[tuple[str, Node | float]] = (),
 ) -> InitialValueProblem:
     """The problem with derivatives of all that is followed along some directions.
 
     Parameters
     ----------
     directions : of each direction the parameters that change along it; all that is followed may do
+    compared : what is followed whose changes may err by a share of all of them, and the unit of each
     """
     changes = [
         {variable(name): variable(change_of(name, k)) for name in (*problem.unknowns, *parameters)}
@@ -72,7 +97,35 @@ def variational_problem(
         kept = zip(closed, of_closing[k], strict=True)
         closing |= {change_of(name, k): as_node(x) for name, x in kept}
     further = tuple(change_of(name, k) for k, parameters in enumerate(directions) for name in parameters)
-    return replace(problem, parameters=(*problem.parameters, *further), rates=rates, closing=closing)
+    further += tuple(floor_of(k) for k in range(len(directions)))
+    error: Node = problem.error
+    for k in range(len(directions)):
+        error = as_node(EXPRESSIONS.max(error, _error_of_changes(k, compared)))
+    return replace(
+        problem, parameters=(*problem.parameters, *further), rates=rates, closing=closing, error=error
+    )
+
+
+def _error_of_changes(direction: int, compared: Sequence[tuple[str, Node | float]]) -> Node | float:
+    """The error of the changes along a direction, of a step, over what is allowed.
+
+    Where a force has a kink the motion itself hardly errs, and its derivatives jump: steps get short there.
+    """
+    m = EXPRESSIONS
+    fifth: Any = 0.0
+    third: Any = 0.0
+    scale: Any = variable(floor_of(direction))
+    for name, unit in compared:
+        change = change_of(name, direction)
+        parts = [variable(prefix + change) / unit for prefix in (OF_FIFTH, OF_THIRD)]
+        fifth, third = fifth + parts[0] * parts[0], third + parts[1] * parts[1]
+        scale = scale + m.max(m.abs(variable(BEFORE + change)), m.abs(variable(change))) / unit
+    if not compared:
+        return 0.0
+    together = fifth + 0.01 * third
+    size = m.abs(variable(STEP)) * fifth / m.sqrt(together * float(len(compared)))
+    allowed = scale * m.max(variable(TOLERANCE), CHANGE_TOLERANCE)
+    return as_node(m.where(m.less(0.0, together), size / allowed, 0.0))
 
 
 @dataclass(frozen=True)
@@ -126,19 +179,27 @@ class VariationalEquations:
     free : the motion
     directions : of each the change of numbers of the equations, by their variables; empty where the start alone changes
     contacts : of each the change of numbers of contacts that the equations do not have; none where these stay
+    sizes : of each that of the number along which it goes; 1 where they are left out
     """
 
     free: FreeMotion
     directions: tuple[Mapping[str, float], ...]
     contacts: tuple[ContactNumbers, ...] = ()
+    sizes: tuple[float, ...] = ()
 
     @cached_property
     def problem(self) -> InitialValueProblem:
         """The motion with its derivatives as an initial value problem."""
-        integration = self.free.integration
+        integration, names = self.free.integration, self.free.integration.names
+        compared: list[tuple[str, Node | float]] = []
+        for coordinate, place, speed in zip(
+            self.free.coordinates, names.coordinates, names.speeds, strict=True
+        ):
+            unit: Node | float = 1.0 if coordinate.kind == "angle" else variable(LENGTH)
+            compared += [(place, unit), (speed, unit * variable(RATE))]
         # where something holds is a number that changes at events
         return variational_problem(
-            integration.problem, [(*one, *integration.names.held) for one in self.directions]
+            integration.problem, [(*one, *names.held) for one in self.directions], compared
         )
 
     def motion(
@@ -186,9 +247,10 @@ class _Course:
         self.rate = integration.rate(start, duration)
         self.own = integration.parameters(duration, tolerance, self.rate)[:, 0]
         held = [0.0] * len(self.names.held)
-        self.parameters = np.concatenate(
-            [self.own, [x for one in equations.directions for x in (*one.values(), *held)]]
-        )[:, None]
+        changes = [x for one in equations.directions for x in (*one.values(), *held)]
+        sizes = equations.sizes or (1.0,) * len(equations.directions)
+        floors = [CHANGE_FLOOR / (abs(size) or 1.0) for size in sizes]
+        self.parameters = np.concatenate([self.own, changes, floors])[:, None]
         self.take = integrator_of(self.problem, executor)
         self.count = len(integration.problem.unknowns)
         self.steps: MotionSteps | None = None
@@ -244,8 +306,6 @@ class _Course:
             reached = int(np.searchsorted(times, transition.time, side="left"))
             state = self._sampled(state, times, rows, done, reached)
             done = max(done, reached)
-            if done == len(times) and transition.time > times[-1]:
-                break
             state = self._until(state, transition.time)
             again = shifts if transition.time <= last else None
             state, shifts = self._passed(state, transition, again, events)
