@@ -50,15 +50,30 @@ class MotionGradients:
     paths : of the numbers
     motion : coordinates and their derivatives
     position, velocity : (n, k, points, axes) derivatives of places and velocities of points
-    event_position, event_velocity : (events, k, points, axes), of the states at the events themselves, before them
+    at_events : places, velocities and their derivatives at the events themselves, before them
     """
 
     paths: tuple[str, ...]
     motion: ChangedMotion
     position: Array
     velocity: Array
-    event_position: Array
-    event_velocity: Array
+    at_events: PointsAtEvents
+
+
+@dataclass(frozen=True)
+class PointsAtEvents:
+    """Points at e events, before these, with derivatives by k numbers.
+
+    Attributes
+    ----------
+    places, velocities : (e, points, axes) [m, m/s; on the sphere of radius 1 without a unit]
+    place_changes, velocity_changes : (e, k, points, axes)
+    """
+
+    places: Array
+    velocities: Array
+    place_changes: Array
+    velocity_changes: Array
 
 
 class PreparedChange(NamedTuple):
@@ -109,13 +124,12 @@ def motion_gradients(
     motion = equations.motion(
         start, [one.start for one in changes], times, settings.tolerance, executor, setting.duration
     )
-    position, velocity = _of_points(setting.free, motion, numbers)
-    return MotionGradients(
-        tuple(paths), motion, position, velocity, *_of_points(setting.free, at_events(motion), numbers)
-    )
+    _places, _velocities, position, velocity = _of_points(setting.free, motion, numbers)
+    at_events = PointsAtEvents(*_of_points(setting.free, _motion_at_events(motion), numbers))
+    return MotionGradients(tuple(paths), motion, position, velocity, at_events)
 
 
-def at_events(motion: ChangedMotion) -> ChangedMotion:
+def _motion_at_events(motion: ChangedMotion) -> ChangedMotion:
     """A motion at its events instead of its instants: its derivatives are those of the states at the events."""
     size, count = motion.coordinates.shape[1], motion.coordinate_changes.shape[1]
     events = motion.events
@@ -173,8 +187,11 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange
 
 def _of_points(
     free: FreeMotion, motion: ChangedMotion, changes: Sequence[Mapping[str, float]]
-) -> tuple[Array, Array]:
-    """Derivatives (n, k, points, axes) of places and velocities, which depend on numbers by themselves too."""
+) -> tuple[Array, Array, Array, Array]:
+    """Places and velocities (n, points, axes), and their derivatives (n, k, points, axes).
+
+    They depend on the numbers by themselves too.
+    """
     integration = free.integration
     variables, equations, m = integration.variables, integration.variables.equations, EXPRESSIONS
     size = len(free.coordinates)
@@ -192,10 +209,11 @@ def _of_points(
     direction = {one: variable(f"change of {one.detail}") for one in (*q, *w)}
     direction |= {variable(name): variable(f"change of {name}") for name in variables.parameters}
     (derived,) = directional_derivatives(nodes, [direction])
-    graph = Graph({str(k): as_node(x) for k, x in enumerate(derived)})
+    shown = [*nodes, *(as_node(x) for x in derived)]
+    graph = Graph({str(k): node for k, node in enumerate(shown)})
     numbers = dict(zip(variables.parameters, variables.values(free.equations)[:, 0].tolist(), strict=True))
     n, axes = len(motion.times), len(jets) // len(points)
-    found = np.zeros((2, len(changes), n, len(points), axes))
+    found = np.zeros((4, len(changes), n, len(points), axes))
     for k, change in enumerate(changes):
         values: dict[str, Any] = {"time": motion.times} | numbers
         values |= {f"change of {name}": change.get(name, 0.0) for name in variables.parameters}
@@ -207,10 +225,12 @@ def _of_points(
                 f"change of speed {i}": motion.speed_changes[:, k, i],
             }
         out = evaluate(graph, values)
-        rows = np.array([np.broadcast_to(out[str(j)], n) for j in range(len(nodes))])
-        found[:, k] = rows.reshape(2, len(points), axes, n).transpose(0, 3, 1, 2)
-    scaled = found * 1.0 / length_unit(free.mechanism)
-    return scaled[0].transpose(1, 0, 2, 3), scaled[1].transpose(1, 0, 2, 3)
+        rows = np.array([np.broadcast_to(out[str(j)], n) for j in range(len(shown))])
+        found[:, k] = rows.reshape(4, len(points), axes, n).transpose(0, 3, 1, 2)
+    places, velocities, place_changes, velocity_changes = found * 1.0 / length_unit(free.mechanism)
+    return (
+        places[0], velocities[0], place_changes.transpose(1, 0, 2, 3), velocity_changes.transpose(1, 0, 2, 3)
+    )  # fmt: skip
 
 
 def add_gradients(
@@ -233,17 +253,19 @@ def gradient_variables(run: xr.Dataset, gradients: MotionGradients) -> dict[str,
 
     motion = gradients.motion
     by = ("sample", "number")
-    return {
-        "coordinate_gradient": vocabulary_variable(
-            "coordinate_gradient", (*by, "coordinate"), over_samples(motion.coordinate_changes)
-        ),
-        "speed_gradient": vocabulary_variable(
-            "speed_gradient", (*by, "coordinate"), over_samples(motion.speed_changes)
-        ),
-        "position_gradient": vocabulary_variable(
-            "position_gradient", (*by, "point", "axis"), over_samples(gradients.position)
-        ),
-        "point_speed_gradient": vocabulary_variable(
-            "point_speed_gradient", (*by, "point", "axis"), over_samples(gradients.velocity)
-        ),
+    found = {
+        "coordinate_gradient": ((*by, "coordinate"), over_samples(motion.coordinate_changes)),
+        "speed_gradient": ((*by, "coordinate"), over_samples(motion.speed_changes)),
+        "position_gradient": ((*by, "point", "axis"), over_samples(gradients.position)),
+        "point_speed_gradient": ((*by, "point", "axis"), over_samples(gradients.velocity)),
     }
+    if motion.events and run.sizes.get("occasion") == len(motion.events):
+        there, of_each = gradients.at_events, ("occasion", "number")
+        found |= {
+            "occasion_position": (("occasion", "point", "axis"), there.places),
+            "occasion_point_speed": (("occasion", "point", "axis"), there.velocities),
+            "occasion_time_gradient": (of_each, np.array([one.time_changes for one in motion.events])),
+            "occasion_position_gradient": ((*of_each, "point", "axis"), there.place_changes),
+            "occasion_point_speed_gradient": ((*of_each, "point", "axis"), there.velocity_changes),
+        }
+    return {name: vocabulary_variable(name, dims, values) for name, (dims, values) in found.items()}
