@@ -20,7 +20,11 @@ from centrode.dynamics.equilibria.equilibrium import (
     pose_variables,
     stable_first,
 )
-from centrode.dynamics.equilibria.equilibrium_search import approached, find_equilibria, settled
+from centrode.dynamics.equilibria.equilibrium_search import (
+    approached_positions,
+    find_equilibria,
+    settled_equilibria,
+)
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import mode_motion, posed_motion
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
@@ -138,7 +142,7 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         return np.asarray(places[equilibrium - 1])
     if loaded.mobility:
         begin = loaded.position.coordinates[None]
-        found = settled(loaded, approached(loaded, begin))
+        found = settled_equilibria(loaded, approached_positions(loaded, begin))
         if np.isfinite(found[0, 0]):
             return np.asarray(found[0])
     # what says why there is none
@@ -182,7 +186,9 @@ def _dataset(
         "damped_frequency": vocabulary_variable("damped_frequency", ("mode",), values.imag),
         "natural_frequency": vocabulary_variable("natural_frequency", ("mode",), sizes),
         "damping_ratio": vocabulary_variable("damping_ratio", ("mode",), damping),
-        "undamped_frequency": vocabulary_variable("undamped_frequency", ("freedom",), motions.undamped),
+        "undamped_frequency": vocabulary_variable(
+            "undamped_frequency", ("freedom",), motions.undamped_frequencies
+        ),
         "mode_amplitude": amplitude,
         "mode_phase": vocabulary_variable(
             "mode_phase", ("mode", "coordinate"), np.where(np.abs(shapes) > 1e-12, np.angle(shapes), 0.0)

@@ -215,7 +215,7 @@ class SmoothFriction:
     uses: frozenset[str] = frozenset("v")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = Friction.energy_class
     by_place = False
 

@@ -93,7 +93,7 @@ class KeptDrive:
 
 
 @dataclass(frozen=True)
-class Shaft:
+class DriveShaft:
     """Rotating masses or a flywheel that move as a drive does.
 
     Attributes
@@ -193,7 +193,7 @@ class EquationsOfMotion:
     masses: tuple[Mass, ...]
     loads: tuple[LoadAlong, ...]
     kept: tuple[KeptDrive, ...] = ()
-    shafts: tuple[Shaft, ...] = ()
+    shafts: tuple[DriveShaft, ...] = ()
     weights: tuple[Number, ...] = ()
     dependent: frozenset[int] = frozenset()
     references: tuple[Number, ...] = ()
@@ -212,7 +212,7 @@ class EquationsOfMotion:
         return tuple(enumerate(row_numbers(self.contacts), self.equations))
 
     @property
-    def flagged(self) -> tuple[int, ...]:
+    def flagged_rows(self) -> tuple[int, ...]:
         """Rows that may be left out: closures that others imply, and those of contacts."""
         return (*sorted(self.dependent), *(row for row, _number in self.contact_rows))
 

@@ -160,7 +160,7 @@ def contact_function(
     outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
     outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
     graph = Graph({name: as_node(x) for name, x in outputs.items()})
-    return python_function(graph, [TIME, *problem.parameters, *problem.carried])
+    return python_function(graph, [TIME, *problem.parameters, *problem.carried_names])
 
 
 def row_of(state: Array) -> Array:
@@ -237,7 +237,7 @@ class EventWatch:
     @cached_property
     def _places(self) -> dict[str, int]:
         """Place of what is carried in a state."""
-        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried)}
+        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried_names)}
 
     @cached_property
     def _mode_places(self) -> dict[str, list[int]]:
@@ -419,7 +419,7 @@ class EventWatch:
     @cached_property
     def _trial(self) -> tuple[Array, Array, Callable[[], None]]:
         """A state, the one behind an attempt from it, and the attempt."""
-        count = HEADER + len(self.integration.problem.carried)
+        count = HEADER + len(self.integration.problem.carried_names)
         start, found = np.zeros((count, 1)), np.zeros((count, 1))
         return start, found, self.take.attempt_of(self._of_one_step, start, found)
 
@@ -542,14 +542,14 @@ class EventWatch:
                 felt = self._feel(time, state[HEADER:, 0].tolist())
         comes = {guard.number for guard in guards if guard.kind == FRICTION} - let_go
         self._choose_modes(state, felt, let_go, comes)
-        return self._closed(state)
+        return self._closed_state(state)
 
-    def _closed(self, state: Array) -> Array:
+    def _closed_state(self, state: Array) -> Array:
         """The state with everything that follows from its modes."""
         problem = self.integration.problem
         carried = state[HEADER:, 0].tolist()
-        if INDEPENDENCE in problem.carried:
-            carried[problem.carried.index(INDEPENDENCE)] = 0.0
+        if INDEPENDENCE in problem.carried_names:
+            carried[problem.carried_names.index(INDEPENDENCE)] = 0.0
         closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
         state[HEADER:, 0] = closed
         # what is passed already is none: a guard at zero counts from there on

@@ -73,7 +73,7 @@ class ContactNumbers(NamedTuple):
             np.array([c.drift for c in contacts], dtype=np.float64),
         )
 
-    def moved(self, by: ContactNumbers, step: float) -> ContactNumbers:
+    def at_step(self, by: ContactNumbers, step: float) -> ContactNumbers:
         """The numbers with a step along their changes."""
         return ContactNumbers(*(one + step * change for one, change in zip(self, by, strict=True)))
 
@@ -148,7 +148,7 @@ class EventDerivatives:
     @cached_property
     def _places(self) -> dict[str, int]:
         """Place of what is carried in a row behind its time."""
-        return {name: k for k, name in enumerate(self.integration.problem.carried)}
+        return {name: k for k, name in enumerate(self.integration.problem.carried_names)}
 
     @cached_property
     def _held(self) -> list[int]:
@@ -282,14 +282,14 @@ class EventDerivatives:
         guards: Sequence[int],
     ) -> Array:
         """Values of guards at a step along a direction from a row before an event."""
-        carried = self._moved(row, change, step)
+        carried = self._carried_at(row, change, step)
         closed = self.integration.closing_function(
             [float(row[0]) + step * shift, 1.0, *(self.parameters + step * direction.parameters), *carried]
         )
         names = self.integration.names.guards
         return np.array([closed[self._places[names[number]]] for number in guards])
 
-    def _moved(self, row: Array, change: Neighbour, step: float) -> Array:
+    def _carried_at(self, row: Array, change: Neighbour, step: float) -> Array:
         carried = row[1:].copy()
         carried[: self._count] += step * change.unknowns
         carried[self._held] += step * change.held
@@ -304,16 +304,16 @@ class EventDerivatives:
         row = np.concatenate(
             [
                 [transition.before[0] + step * shift],
-                self._moved(transition.before, change, step),
+                self._carried_at(transition.before, change, step),
             ]
         )
-        numbers = self.numbers.moved(direction.contacts, step)
+        numbers = self.numbers.at_step(direction.contacts, step)
         parameters = self.parameters + step * direction.parameters
         watch = EventWatch(self.integration, self.take, parameters[:, None], self.rate)
         felt = watch.felt_at(row)
         rests = np.zeros(0)
         if transition.impact is not None:
-            rests = self._hit(watch, row, felt, transition.impact, numbers.restitution)
+            rests = self._apply_impact(watch, row, felt, transition.impact, numbers.restitution)
         self._take_modes(row, transition, felt, numbers)
         closed = np.array(self.integration.closing_function([row[0], 1.0, *parameters, *row[1:]]))
         return np.concatenate([closed[: self._count], row[1:][self._held], rests])
@@ -335,7 +335,7 @@ class EventDerivatives:
                     held[k] = numbers.least[k] if now < 0.0 else numbers.most[k]
         row[1:][self._held] = held
 
-    def _hit(
+    def _apply_impact(
         self, watch: EventWatch, row: Array, felt: ContactForces, impact: ImpactRecord, restitution: Array
     ) -> Array:
         """Change the speeds of a row by impulses of the same contacts; how long last small impacts take [s]."""

@@ -113,7 +113,7 @@ def motion_gradients(
         raise InputError("gradients", what, _("give 1 to {most} paths").format(most=MOST_NUMBERS))
     setting = multibody_setting(described, settings)
     start = setting.free.initial(setting.speeds, setting.start)
-    changes = [_change(described, setting.free, path) for path in paths]
+    changes = [_prepared_change(described, setting.free, path) for path in paths]
     numbers = tuple(one.numbers for one in changes)
     equations = VariationalEquations(
         setting.free,
@@ -142,14 +142,14 @@ def _motion_at_events(motion: ChangedMotion) -> ChangedMotion:
     )
 
 
-def _prepared(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
+def _prepared_motion(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
     changed = with_value(described, path, value)
     assert changed.simulation is not None
     setting = multibody_setting(changed, changed.simulation)
     return setting.free, setting.free.initial(setting.speeds, setting.start)
 
 
-def _change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange:
+def _prepared_change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange:
     """How the numbers of the equations and the initial state change with a number of the description."""
     value = value_at(described, path)
     step = STEP * (abs(value) or 1.0)
@@ -160,7 +160,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange
     contacts = ContactNumbers(*np.zeros((len(ContactNumbers._fields), len(free.equations.contacts))))
     for count, weight in WEIGHTS:
         for sense in (1.0, -1.0):
-            other, state = _prepared(described, path, value + sense * count * step)
+            other, state = _prepared_motion(described, path, value + sense * count * step)
             if not variables.fits(other.equations):
                 what = _("with another value the equations have other terms, so there is no derivative here")
                 raise InputError(path, what, _("give it a value other than zero"))
@@ -168,7 +168,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange
             slopes += share * variables.values(other.equations)[:, 0]
             places += share * state.coordinates
             speeds += share * state.speeds
-            contacts = contacts.moved(ContactNumbers.of(other.equations), share)
+            contacts = contacts.at_step(ContactNumbers.of(other.equations), share)
     # what rounding makes of numbers that do not change is no change
     here = np.abs(variables.values(free.equations)[:, 0])
     changes = {

@@ -227,10 +227,10 @@ class VariationalEquations:
         NotComputedYet
             An event is made of what is not followed.
         """
-        return _Course(self, start, tolerance, executor, duration or float(times[-1])).run(changes, times)
+        return _VariedCourse(self, start, tolerance, executor, duration or float(times[-1])).run(changes, times)
 
 
-class _Course:
+class _VariedCourse:
     """One motion with its derivatives, from event to event."""
 
     def __init__(
@@ -273,10 +273,10 @@ class _Course:
             for k, one in enumerate(self.equations.directions)
         )
 
-    def _begun(self, changes: Sequence[InitialState]) -> dict[str, float]:
+    def _carried_at_start(self, changes: Sequence[InitialState]) -> dict[str, float]:
         """All that is carried at the start, by names."""
         names, base = self.names, self.integration.problem
-        carried = dict(zip(base.carried, self.integration.carried_values(self.start), strict=True))
+        carried = dict(zip(base.carried_names, self.integration.carried_values(self.start), strict=True))
         for k, change in enumerate(changes):
             carried |= {change_of(name, k): 0.0 for name in base.unknowns}
             own = (
@@ -295,34 +295,34 @@ class _Course:
 
     def run(self, changes: Sequence[InitialState], times: Array) -> ChangedMotion:
         """The motion at instants with its derivatives."""
-        carried = self._begun(changes)
-        values = [carried[name] for name in self.problem.carried]
+        carried = self._carried_at_start(changes)
+        values = [carried[name] for name in self.problem.carried_names]
         size = min(float(times[-1]), 0.01 / self.rate)
         state = np.concatenate([[0.0, size, 0.0, 0.0], values])[:, None]
-        rows = np.empty((len(times), len(self.problem.carried)))
+        rows = np.empty((len(times), len(self.problem.carried_names)))
         events: list[ChangedEvent] = []
         shifts, last, done = [0.0] * len(changes), -inf, 0
         for transition in () if self.steps is None else self.steps.transitions:
             reached = int(np.searchsorted(times, transition.time, side="left"))
-            state = self._sampled(state, times, rows, done, reached)
+            state = self._take_samples(state, times, rows, done, reached)
             done = max(done, reached)
-            state = self._until(state, transition.time)
+            state = self._integrate_until(state, transition.time)
             again = shifts if transition.time <= last else None
-            state, shifts = self._passed(state, transition, again, events)
+            state, shifts = self._pass_transition(state, transition, again, events)
             last = transition.time
-        self._sampled(state, times, rows, done, len(times))
+        self._take_samples(state, times, rows, done, len(times))
         return self._changed_motion(times, rows, len(changes), events)
 
-    def _sampled(self, state: Array, times: Array, rows: Array, begin: int, end: int) -> Array:
+    def _take_samples(self, state: Array, times: Array, rows: Array, begin: int, end: int) -> Array:
         for number in range(begin, end):
-            state = self._until(state, float(times[number]))
+            state = self._integrate_until(state, float(times[number]))
             rows[number] = state[HEADER:, 0]
         return state
 
-    def _until(self, state: Array, time: float) -> Array:
+    def _integrate_until(self, state: Array, time: float) -> Array:
         """The state at an instant, by steps from one before it."""
         self.parameters[CONTROLS.index(END)] = time
-        guard = HEADER + self.problem.carried.index(GUARD) if GUARD in self.problem.carried else None
+        guard = HEADER + self.problem.carried_names.index(GUARD) if GUARD in self.problem.carried_names else None
         attempts = 0
         while float(state[0, 0]) < time:
             before = float(state[0, 0])
@@ -347,7 +347,7 @@ class _Course:
     def _held_place(self, direction: int, name: str) -> int:
         return self.problem.parameters.index(change_of(name, direction))
 
-    def _passed(
+    def _pass_transition(
         self,
         state: Array,
         transition: Transition,
@@ -368,13 +368,13 @@ class _Course:
         # the motion itself goes on from where it was found to be
         unknowns = state[HEADER : HEADER + self.count, 0]
         unknowns[:] = transition.behind[1 : 1 + self.count]
-        fixed = self.integration.problem.fixed
+        fixed = self.integration.problem.fixed_names
         state[len(state) - len(fixed) :, 0] = transition.behind[1 + self.count :]
         state[0, 0] = transition.time
-        events += self._told(transition, found)
+        events += self._changed_events(transition, found)
         return state, [one.time for one in found]
 
-    def _told(self, transition: Transition, found: Sequence[EventChange]) -> list[ChangedEvent]:
+    def _changed_events(self, transition: Transition, found: Sequence[EventChange]) -> list[ChangedEvent]:
         """The events of a transition with their derivatives."""
         rests, told = rests_of(transition), []
         parts = [self.names.part(kind) for kind in (self.names.coordinates, self.names.speeds)]
@@ -390,7 +390,7 @@ class _Course:
         self, times: Array, rows: Array, directions: int, events: Sequence[ChangedEvent]
     ) -> ChangedMotion:
         def part(wanted: Sequence[str]) -> Array:
-            return rows[:, [self.problem.carried.index(name) for name in wanted]]
+            return rows[:, [self.problem.carried_names.index(name) for name in wanted]]
 
         names = self.names
         return ChangedMotion(
