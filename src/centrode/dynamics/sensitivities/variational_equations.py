@@ -227,7 +227,9 @@ class VariationalEquations:
         NotComputedYet
             An event is made of what is not followed.
         """
-        return _VariedCourse(self, start, tolerance, executor, duration or float(times[-1])).run(changes, times)
+        return _VariedCourse(self, start, tolerance, executor, duration or float(times[-1])).run(
+            changes, times
+        )
 
 
 class _VariedCourse:
@@ -322,7 +324,9 @@ class _VariedCourse:
     def _integrate_until(self, state: Array, time: float) -> Array:
         """The state at an instant, by steps from one before it."""
         self.parameters[CONTROLS.index(END)] = time
-        guard = HEADER + self.problem.carried_names.index(GUARD) if GUARD in self.problem.carried_names else None
+        guard = (
+            HEADER + self.problem.carried_names.index(GUARD) if GUARD in self.problem.carried_names else None
+        )
         attempts = 0
         while float(state[0, 0]) < time:
             before = float(state[0, 0])
