@@ -237,3 +237,35 @@ def test_derivatives_are_those_of_differences(
         instants = differences(lambda course: np.array([event.time for event in course.events]))[:5]
         own_times = np.array([one.time_changes[k] for one in found.motion.events])[:5]
         assert np.abs(instants - own_times).max() < 5e-8 * max(float(np.abs(instants).max()), 1e-2), path
+
+
+def test_what_has_no_derivative_is_named() -> None:
+    with pytest.raises(ct.InputError, match="does not depend on it"):
+        gradients_of(bouncing_mass(), ["simulation.duration"], [1.5])
+    twice = bouncing_mass(
+        links={"one": {"points": {"B": [0, 0]}, "mass": 1}, "two": {"points": {"C": [0, 0]}, "mass": 1}},
+        guides=[
+            {"point": "B", "on": "frame", "through": "O", "direction": [0, 1], "link": "one"},
+            {"point": "C", "on": "frame", "through": "O", "direction": [0, 1], "link": "two"},
+        ],
+        drives=[{"guide": "B", "start": 1.0}, {"guide": "C", "start": 1.0}],
+        stops=[
+            {"name": "floor", "guide": "B", "least": 0.1, "restitution": 0.7},
+            {"name": "ground", "guide": "C", "least": 0.1, "restitution": 0.7},
+        ],
+    )
+    # both fall alike with another gravity, and part with another height of one
+    assert len(gradients_of(twice, ["gravity.y"], [0.5]).motion.events) == 6
+    with pytest.raises(ct.MotionError, match="two things happen at once"):
+        gradients_of(twice, ["drives.B.start"], [0.5])
+
+
+def test_a_dataset_has_the_derivatives_of_its_events() -> None:
+    mass = bouncing_mass()
+    run = ct.simulate(mass, gradients=["drives.B.start", "stops.floor.restitution"])
+    speeds = run.occasion_point_speed.sel(point="B", axis="y").values
+    # v = sqrt(2 g h) before the first impact, e times as much before the second
+    fast = math.sqrt(2 * GRAVITY * 0.9)
+    assert np.allclose(speeds[:2], [-fast, -0.7 * fast], atol=1e-10)
+    slopes = run.occasion_point_speed_gradient.sel(point="B", axis="y").values
+    assert np.allclose(slopes[:2], [[-GRAVITY / fast, 0], [-0.7 * GRAVITY / fast, -fast]], atol=1e-10)

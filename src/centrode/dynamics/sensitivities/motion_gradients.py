@@ -21,7 +21,7 @@ from centrode.dynamics.sensitivities.event_derivatives import ContactNumbers
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
 from centrode.dynamics.simulation.multibody_motion import multibody_setting
 from centrode.dynamics.state import length_unit
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model.files import value_at, with_value
@@ -182,7 +182,11 @@ def _prepared_change(described: Mechanism, free: FreeMotion, path: str) -> Prepa
         np.where(np.abs(one) * step > 1e-13 * np.abs(number), one, 0.0)
         for one, number in zip(contacts, own, strict=True)
     )
-    return PreparedChange(changes, InitialState(places, speeds), ContactNumbers(*kept))
+    contacts = ContactNumbers(*kept)
+    if not (changes or np.any(places) or np.any(speeds) or any(np.any(one) for one in contacts)):
+        what = _("the motion does not depend on it, or by a formula whose numbers are not followed")
+        raise NotComputedYet(path, what, _("compare motions whose numbers differ a little"))
+    return PreparedChange(changes, InitialState(places, speeds), contacts)
 
 
 def _of_points(
