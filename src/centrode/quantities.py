@@ -498,7 +498,7 @@ FORCES = (
     Quantity("position_gradient", "∂r/∂p", "1", mark("derivative of a position by a number")),
     Quantity("point_speed_gradient", "∂v/∂p", "1", mark("derivative of the velocity of a point by a number")),
     Quantity("occasion_position", "r", "m", mark("position of a point at an event")),
-    Quantity("occasion_point_speed", "v", "m s-1", mark("velocity of a point at an event, before it")),
+    Quantity("occasion_point_speed", "v", "m/s", mark("velocity of a point at an event, before it")),
     Quantity(
         "occasion_time_gradient", "∂t/∂p", "1", mark("derivative of the instant of an event by a number")
     ),
