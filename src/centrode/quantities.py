@@ -497,6 +497,20 @@ FORCES = (
     Quantity("speed_gradient", "∂q̇/∂p", "1", mark("derivative of the speed of a coordinate by a number")),
     Quantity("position_gradient", "∂r/∂p", "1", mark("derivative of a position by a number")),
     Quantity("point_speed_gradient", "∂v/∂p", "1", mark("derivative of the velocity of a point by a number")),
+    Quantity("occasion_position", "r", "m", mark("position of a point at an event")),
+    Quantity("occasion_point_speed", "v", "m/s", mark("velocity of a point at an event, before it")),
+    Quantity(
+        "occasion_time_gradient", "∂t/∂p", "1", mark("derivative of the instant of an event by a number")
+    ),
+    Quantity(
+        "occasion_position_gradient", "∂r/∂p", "1", mark("derivative of a position at an event by a number")
+    ),
+    Quantity(
+        "occasion_point_speed_gradient",
+        "∂v/∂p",
+        "1",
+        mark("derivative of a velocity at an event, before it, by a number"),
+    ),
     Quantity("critical_value", "p", "1", mark("critical value of the number that is varied")),
     Quantity("critical_kind", "", "1", mark("kind of a critical value")),
     Quantity("critical_coordinate", "q", "rad", mark("generalised coordinate at a critical value")),

@@ -144,6 +144,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     known |= {f"branch_{name}" for name in ("value", "coordinate", "stability")}
     known |= {f"critical_{name}" for name in ("value", "kind", "coordinate")}
     known |= {f"{name}_gradient" for name in ("coordinate", "speed", "position", "point_speed")}
+    known |= {f"occasion_{name}" for name in ("position", "point_speed")}
+    known |= {f"occasion_{name}_gradient" for name in ("time", "position", "point_speed")}
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

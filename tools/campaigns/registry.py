@@ -18,6 +18,7 @@ from tools.campaigns.free_motions import references as free_references
 from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.gears import cases as gears
 from tools.campaigns.imports import cases as imports
+from tools.campaigns.long_runs import cases as long_runs
 from tools.campaigns.pages import cases as pages
 from tools.campaigns.reactions import cases as reactions
 from tools.campaigns.rotatability import cases as rotatability
@@ -43,6 +44,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         free_examples.CAMPAIGN,
         free_references.CAMPAIGN,
         contacts.CAMPAIGN,
+        long_runs.CAMPAIGN,
         pages.CAMPAIGN,
         source_files.CAMPAIGN,
         gears.CAMPAIGN,

@@ -1,4 +1,4 @@
-"""Numbers of loads, of the machine, of the simulation and of gravity by their paths: `loads.force H.vector.x`."""
+"""Numbers of loads, contacts, the machine, the simulation and gravity by their paths: `loads.force H.vector.x`."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.contacts import Clamp, Stop
 from centrode.model.description import Description
 from centrode.model.loads import (
     AnyLoad,
@@ -27,7 +28,7 @@ from centrode.model.loads import (
 )
 from centrode.model.reading import nearest, value_text
 
-ROOMS = ("loads", "machine", "simulation", "gravity")
+ROOMS = ("loads", "machine", "simulation", "gravity", "stops", "clamps")
 """First words of these paths."""
 
 FORMULA = "formula"
@@ -47,10 +48,18 @@ KINDS_OF_LOADS: Mapping[type, Mapping[str, str]] = {
     PointWeight: {"value": "force"},
     HingeFriction: {
         "value": "torque",
+        "static": "torque",
+        "surface_speed": "angular speed",
         "viscous": "angular damping",
         "quadratic": "angular quadratic damping",
     },
-    GuideFriction: {"value": "force", "viscous": "damping", "quadratic": "quadratic damping"},
+    GuideFriction: {
+        "value": "force",
+        "static": "force",
+        "surface_speed": "speed",
+        "viscous": "damping",
+        "quadratic": "quadratic damping",
+    },
     BearingFriction: {"coefficient": "ratio", "radius": "length"},
     SliderFriction: {"coefficient": "ratio", "length": "length", "height": "length"},
 }
@@ -104,6 +113,8 @@ def place_of_number(mechanism: Description, tables: dict[str, Any], path: str) -
         raise InputError("", what.format(room=room, path=value_text(path)), _("write one in the description"))
     if room == "gravity":
         return _component(tables, "gravity", rest, path, "acceleration")
+    if room in ("stops", "clamps"):
+        return _of_contact(mechanism, tables[room], room, rest, path)
     if room == "loads":
         return _of_load(mechanism, tables["loads"], rest, path)
     return _of_part(mechanism, tables, room, rest, path)
@@ -151,6 +162,37 @@ def _of_load(mechanism: Description, tables: list[dict[str, Any]], rest: str, pa
         # the load is there, and the path says nothing of it
         raise _unknown(path, "", _keys_of(mechanism.loads[names.index(rest)]))
     raise _unknown(path, rest.partition(".")[0], names)
+
+
+def _of_contact(
+    mechanism: Description, tables: list[dict[str, Any]], room: str, rest: str, path: str
+) -> PlaceOfNumber:
+    """A number of a stop or a clamp, which is named by what results call it."""
+    contacts: Sequence[Stop | Clamp] = mechanism.stops if room == "stops" else mechanism.clamps
+    names = [contact.label for contact in contacts]
+    for name in sorted(names, key=len, reverse=True):
+        if not rest.startswith(f"{name}."):
+            continue
+        number = names.index(name)
+        known, key = numbers_of_contact(contacts[number]), rest[len(name) + 1 :]
+        if key not in known:
+            raise _unknown(path, key, list(known))
+        return PlaceOfNumber(tables[number], key, known[key])
+    raise _unknown(path, rest if rest in names else rest.partition(".")[0], names)
+
+
+def numbers_of_contact(contact: Stop | Clamp) -> Mapping[str, str]:
+    """Numbers of a stop or a clamp, and the kind of each."""
+    if isinstance(contact, Clamp):
+        return {"until": "time"}
+    angular, place = ("angular ", "angle") if contact.measures_angle else ("", "length")
+    return {
+        "least": place,
+        "most": place,
+        "restitution": "ratio",
+        "stiffness": f"{angular}stiffness",
+        "damping": f"{angular}damping",
+    }
 
 
 def _keys_of(load: AnyLoad) -> list[str]:

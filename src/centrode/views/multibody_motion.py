@@ -207,6 +207,7 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     yield Fact(Sentence("constraints"), _residuals(run))
     yield from _occasions(run)
     yield from _regime(results)
+    yield from _rest(results)
     if "worst_imbalance" in run.attrs:
         share = Number(float(run.attrs["worst_imbalance"]), digits=".1e")
         yield Fact(
@@ -244,6 +245,25 @@ def _regime(results: SimulationResults) -> Iterator[Fact]:
         yield Fact(
             Sentence("run-up"), Sentence("within one hundredth of it after {time}", time=Number(time, "s"))
         )
+
+
+def _rest(results: SimulationResults) -> Iterator[Fact]:
+    """When it has come to rest for good, and how far it went."""
+    rest = results.rest
+    if rest is None:
+        return
+    run = results.simulation
+    names = run["coordinate"].values
+    unit = _units(run["generalised_coordinate"], len(names))[rest.coordinate]
+    yield Fact(
+        Sentence("at rest"),
+        Sentence(
+            "after {time}; {coordinate} by {way} from its start",
+            time=Number(rest.time, "s"),
+            coordinate=Name(str(names[rest.coordinate])),
+            way=Number(rest.way, unit),
+        ),
+    )
 
 
 def _scheme(run: xr.Dataset) -> Text:

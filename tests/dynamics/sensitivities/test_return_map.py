@@ -70,6 +70,76 @@ def test_pendulum_on_a_crank_follows_it_and_its_multipliers_obey_liouville() -> 
     assert np.abs(apart).max() < 1e-8
 
 
+def test_a_ball_on_a_vibrating_table_has_the_multipliers_of_its_closed_form() -> None:
+    # one impact in a period T: it leaves with g T / 2, the table moves with (g T / 2) (1 - e) / (1 + e) then;
+    # departures of instant and speed: dt' = dt + c dw, dw' = (1 + e) a dt' - e dw + e g (dt' - dt), c = (1 + e) / g
+    g, e, omega, size = 9.81, 0.5, 4 * math.pi, 0.07
+    period = 2 * math.pi / omega
+    leaves = g * period / 2
+    phase = math.acos(leaves * (1 - e) / (1 + e) / (size * omega))
+    a, c = -size * omega**2 * math.sin(phase), (1 + e) / g
+    exact = np.linalg.eigvals(np.array([[1, c], [(1 + e) * a, (1 + e) * a * c - e + e * g * c]]))
+    # half a period behind the impact the ball is at its greatest height
+    here = phase + math.pi
+    height = size * math.sin(phase) + leaves * period / 4 - size * math.sin(here)
+    table = ct.Mechanism(
+        gravity=[0, -g],
+        frame={"points": {"O": [0, 0], "Q": [1, 0]}},
+        links={
+            "OA": {"length": size, "mass": 0.1, "shape": "rod"},
+            "table": {"points": {"T": [0, 0], "U": [1, 0]}, "mass": 1},
+            "ball": {"points": {"B": [0, 0]}, "mass": 0.2},
+        },
+        guides=[
+            {"point": "U", "on": "frame", "through": "Q", "direction": [0, 1], "link": "table"},
+            {"point": "A", "on": "table", "through": [0, 0], "direction": [1, 0]},
+            {"point": "B", "on": "table", "through": [0, 0], "direction": [0, 1], "link": "ball"},
+        ],
+        drives=[{"link": "OA", "start": here, "speed": omega}, {"guide": "B", "start": height * 1.01}],
+        stops=[{"guide": "B", "least": 0, "restitution": e}],
+        simulation={
+            "keeps": ["OA"],
+            "duration": 10,
+            "speeds": {"drives.B": -size * omega * math.cos(here)},
+        },
+    )
+    found = regime_of(table, 10.0)
+    assert math.isclose(found.period, period, rel_tol=1e-12)
+    assert np.allclose(np.sort_complex(found.multipliers), np.sort_complex(exact), atol=1e-8)
+    free = found.free
+    run = free.integrate(found.start, found.period, 1e-11, at=[found.period])
+    (impact,) = [event for event in run.events if event.kind == "impact"]
+    assert abs(impact.time - period / 2) < 1e-8
+
+
+def test_a_block_on_a_belt_has_the_period_of_its_closed_form_and_forgets_departures() -> None:
+    # it sticks over 2 a at the belt's speed, and slips about F / k until it is as fast as the belt again
+    mass, stiffness, static, kinetic, belt = 1.0, 40.0, 5.0, 3.0, 0.2
+    omega, a = math.sqrt(stiffness / mass), (static - kinetic) / stiffness
+    period = 2 * a / belt + 2 / omega * (math.pi - math.atan(a * omega / belt))
+    block = ct.Mechanism(
+        frame={"points": {"O": [0, 0], "W": [-1, 0]}},
+        links={"block": {"points": {"P": [0, 0]}, "mass": mass}},
+        guides=[{"point": "P", "on": "frame", "through": "O", "direction": [1, 0], "link": "block"}],
+        drives=[{"guide": "P", "start": 0}],
+        loads=[
+            {"kind": "spring", "points": ["W", "P"], "stiffness": stiffness, "free_length": 1},
+            {
+                "kind": "friction",
+                "guide": "P",
+                "value": kinetic,
+                "static": static,
+                "surface_speed": belt,
+            },
+        ],
+        simulation={"duration": 8.0, "equations": "multibody"},
+    )
+    found = regime_of(block, 8.0)
+    assert math.isclose(found.period, period, rel_tol=1e-9)
+    assert np.abs(found.multipliers).max() < 1e-7
+    assert found.stable
+
+
 def test_a_rod_that_swings_back_has_no_regime() -> None:
     rod = ct.Mechanism(
         gravity=[0, -9.81],

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import centrode as ct
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
+from centrode.dynamics.forward_dynamics.motion_steps import Event
 from centrode.dynamics.forward_dynamics.trajectory import Trajectory
 from tools.campaigns.campaign import Campaign, Outcome, random_of
-from tools.campaigns.contacts.time_steps import Rubbing, Run, Wall, run_steps
+from tools.campaigns.contacts.time_steps import NEARLY_STILL, Rubbing, Run, Wall, run_steps
 from tools.campaigns.free_motions.cases import GRAVITY, hung, rods, weight_times_length, with_rollers
 from tools.campaigns.free_motions.dense_equations import DenseMechanism
 from tools.campaigns.grown.plane import KINDS, grown
@@ -20,13 +21,19 @@ Parts = dict[str, Any]
 DURATION, COARSE = 0.5, 80
 """Seconds, and equal steps of the longest kind."""
 TOLERANCE = 1e-11
+RESTED = 0.05
+"""By how much [s] times at rest may differ."""
 BOOKS, GAINED, SUNK = 1e-9, 1e-12, 1e-11
 NEAR, FALLS = 2e-2, 0.75
 """How near the shortest steps come to ours, of the length, and to which share of the longest ones' distance."""
 FINE = 2e-4
 """Below this distance errors of time steps need not fall: they cancel by chance."""
 CLEAR = 0.15
-"""Impacts slower than this [m/s] may be two of ours, or none."""
+"""Impacts slower than this [m/s] may be several of ours, or none: flights shorter than a step are none to the steps."""
+WINDOW = 2e-2
+"""Time [s] by which an impact of the time steps may be late; as near to the end one way alone may have it."""
+FINER = (16, 64)
+"""Steps over those of the longest kind, where impacts that belong together are not found with a quarter of the step."""
 
 
 def drawn(random: np.random.Generator) -> tuple[str, Parts]:
@@ -50,7 +57,7 @@ def with_contacts(
     swung = free.integrate(free.initial(), DURATION, 1e-8, samples=26)
     walls, stops = [], []
     moving = [name for name in free.points if name not in parts["frame"]["points"]]
-    for number in range(int(random.integers(1, 3))):
+    for _wall in range(int(random.integers(1, 3))):
         name = str(random.choice(moving))
         way = swung.places[:, free.points.index(name)]
         if len(way) < 5:
@@ -62,16 +69,17 @@ def with_contacts(
         direction = (float(there[0] / size), float(there[1] / size))
         most = float(direction @ way[0]) + size * float(random.uniform(0.3, 0.8))
         restitution = round(float(random.uniform(0.0, 0.9)), 2)
-        walls.append(Wall(name, direction, most, restitution))
         stops.append(
             {
-                "name": f"wall {number}",
+                # walls are counted as they stand in the list: some of those that were drawn are none
+                "name": f"wall {len(walls)}",
                 "point": name,
                 "direction": list(direction),
                 "most": most,
                 "restitution": restitution,
             }
         )
+        walls.append(Wall(name, direction, most, restitution))
     rubbing, loads = [], []
     for body in random.permutation(list(parts["links"]))[: int(random.integers(1, 3))].tolist():
         kinetic = weight_times_length(free) * float(random.uniform(0.0005, 0.02))
@@ -143,27 +151,88 @@ def compare(
     outcome.hold(row, "apart", apart[-1], NEAR)
     if apart[0] > FINE:
         outcome.measure(row, "order", math.log2(max(apart[0], 1e-12) / max(apart[2], 1e-12)) / 2.0)
-    agree(outcome, row, course, runs[2], walls)
+    agree(outcome, row, dense, course, runs[2], walls, rubbing)
+    rest(outcome, row, free, course, runs[2], rubbing)
 
 
-def agree(outcome: Outcome, row: str, course: Trajectory, found: Run, walls: list[Wall]) -> None:
-    """The clear impacts of both, by walls."""
-    for number in range(len(walls)):
-        own = [event for event in course.events if event.kind == "impact" and event.part == f"wall {number}"]
-        other = [one for one in found.impacts if one[1] == number]
-        clear = [event for event in own if clear_impact(event, walls[number])]
-        theirs = [one for one in other if one[2] < -CLEAR]
-        outcome.count("clear impacts", len(clear))
-        if len(clear) != len(theirs):
-            outcome.count("impacts that differ in number")
+def agree(
+    outcome: Outcome,
+    row: str,
+    dense: DenseMechanism,
+    course: Trajectory,
+    found: Run,
+    walls: list[Wall],
+    rubbing: list[Rubbing],
+) -> None:
+    """Clear impacts of each belong to impacts of the other; where they do not, shorter steps are asked."""
+    own = own_impacts(course, walls)
+    outcome.count("clear impacts", sum(one.is_clear for one in own))
+    lonely = alone(own, steps_impacts(found))
+    for times in FINER:
+        if not lonely:
+            break
+        outcome.count(f"impacts looked for with {times} times as many steps")
+        lonely = alone(own, steps_impacts(run_steps(dense, walls, rubbing, DURATION, COARSE * times)))
+    for one in lonely:
+        outcome.fault(f"{row}: an impact without its like: {one}")
 
 
-def clear_impact(event: Any, wall: Wall) -> bool:
-    """Whether an impact was fast enough: half of what it lost over its impulse is a speed."""
-    if wall.restitution > 0.999 or event.impulse <= 0.0:
-        return False
-    # lost = impulse * (1 - e) / 2 * speed
-    return bool(2.0 * event.lost / event.impulse / (1.0 - wall.restitution) > CLEAR)
+class SeenImpact(NamedTuple):
+    """An impact as one of the two ways saw it: instant [s], number of the wall, speed [m/s]."""
+
+    time: float
+    wall: int
+    speed: float
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether it is so fast that the other way has to see it."""
+        return self.speed > CLEAR
+
+
+def own_impacts(course: Trajectory, walls: list[Wall]) -> list[SeenImpact]:
+    """Impacts of the motion by events."""
+    numbers = {f"wall {k}": k for k in range(len(walls))}
+    return [
+        SeenImpact(event.time, numbers[event.part], speed_of_impact(event, walls[numbers[event.part]]))
+        for event in course.events
+        if event.kind == "impact"
+    ]
+
+
+def steps_impacts(found: Run) -> list[SeenImpact]:
+    """Impacts of time steps."""
+    return [SeenImpact(time, wall, -speed) for time, wall, speed in found.impacts]
+
+
+def alone(own: list[SeenImpact], other: list[SeenImpact]) -> list[SeenImpact]:
+    """Clear impacts of either list to which none of the other belongs, but for those at the end of the time."""
+    lonely = []
+    for mine, theirs in ((own, other), (other, own)):
+        left = list(theirs)
+        for one in sorted(mine, key=lambda impact: -impact.speed):
+            near = [its for its in left if its.wall == one.wall and abs(its.time - one.time) <= WINDOW]
+            if near:
+                left.remove(min(near, key=lambda its: abs(its.time - one.time) + abs(its.speed - one.speed)))
+            elif one.is_clear and one.time < DURATION - WINDOW:
+                lonely.append(one)
+    return lonely
+
+
+def rest(
+    outcome: Outcome, row: str, free: FreeMotion, course: Trajectory, found: Run, rubbing: list[Rubbing]
+) -> None:
+    """For how long links with friction are at rest, in both."""
+    for one, theirs in zip(rubbing, found.rests, strict=True):
+        still = np.abs(course.angular_velocities[:, free.links.index(one.body)]) <= NEARLY_STILL
+        own = DURATION * float(np.mean(still))
+        outcome.hold(row, "rest", abs(own - theirs), RESTED)
+        outcome.count("links with friction that rest", int(own > RESTED))
+
+
+def speed_of_impact(event: Event, wall: Wall) -> float:
+    """Speed [m/s] before an impact: what it lost is its impulse times half of what is left of the speed's change."""
+    return 2.0 * event.lost / event.impulse / (1.0 - wall.restitution) if event.impulse > 0.0 else 0.0
 
 
 def distance(dense: DenseMechanism, free: FreeMotion, course: Trajectory, one: Run) -> float:
@@ -182,13 +251,16 @@ CAMPAIGN = Campaign(
         "fall from rest against one or two walls with restitutions from 0 to 0.9, with dry friction of one or two "
         "links, the static one in half of all cases greater. The motion by events is compared with Moreau's time "
         "steps in absolute coordinates (`tools/campaigns/contacts/time_steps.py`), which seek no event and share no "
-        "formula with the program: with half and a quarter of the step they come nearer at their first order."
+        "formula with the program: with half and a quarter of the step they come nearer at their first order. Each "
+        f"impact faster than {CLEAR:g} m/s of either has one of the other within {WINDOW:g} s, but for those as near "
+        "to the end; slower ones are merged by steps that are longer than their flights."
     ),
     columns={
         "books": f"greatest gap of the energy balance over m g l; at most {BOOKS:g}",
         "gain": f"greatest gain of energy in an impact over m g l; at most {GAINED:g}",
         "sunk": f"how far a point sinks into its wall, of the greatest length; at most {SUNK:g}",
         "apart": f"distance of points from the time steps with the shortest step, over the length; at most {NEAR:g}",
+        "rest": f"difference of times at rest of links with friction [s]; at most {RESTED:g}",
         "order": "greatest order at which time steps come nearer",
     },
     run=run,

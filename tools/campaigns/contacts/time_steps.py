@@ -21,6 +21,9 @@ Array: TypeAlias = npt.NDArray[Any]
 SWEEPS = 400
 """Sweeps of Gauss and Seidel over a handful of impulses."""
 SLOW = 1e-9
+STILL, NEARLY_STILL = 1e-8, 2e-2
+"""Speeds [rad/s] below which friction sticks, and below which a link counts as at rest: where a wall holds it too,
+what is left of its speed is of the order of the step."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +48,12 @@ class Rubbing:
 
 @dataclass
 class Run:
-    """What time steps reached: coordinates, velocities, impacts by walls, and when frictions began to stick."""
+    """What time steps reached: coordinates, velocities, impacts by walls, and how long each friction rested [s]."""
 
     q: Array
     v: Array
     impacts: list[tuple[float, int, float]] = field(default_factory=list)
-    sticks: list[tuple[float, int]] = field(default_factory=list)
+    rests: list[float] = field(default_factory=list)
 
 
 def wall_gap(dense: DenseMechanism, wall: Wall, q: Array) -> Array:
@@ -68,6 +71,7 @@ def run_steps(
     run = Run(q, v)
     # it begins at rest, where friction holds as much as it can
     stuck = [True] * len(rubbing)
+    run.rests = [0.0] * len(rubbing)
     spins = np.array([_spin_row(dense, one) for one in rubbing]).reshape(len(rubbing), len(q))
     for step in range(count):
         middle = q + 0.5 * h * v
@@ -138,10 +142,9 @@ def _with_impulses(
             run.impacts.append(((step + 1) * h, wall, float(old[k])))
     for k in range(len(rubbing)):
         place = count + k
-        sticks = abs(after[place]) <= 1e-8 * (1.0 + abs(old[place])) and abs(impulses[place]) < high[place]
-        if sticks and not stuck[k] and step:
-            run.sticks.append(((step + 1) * h, k))
-        stuck[k] = bool(sticks)
+        run.rests[k] += h if abs(after[place]) <= NEARLY_STILL else 0.0
+        rests = abs(after[place]) <= STILL * (1.0 + abs(old[place]))
+        stuck[k] = bool(rests and abs(impulses[place]) < high[place])
     return np.asarray(y + own.T @ impulses)
 
 

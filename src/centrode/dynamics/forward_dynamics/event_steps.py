@@ -12,12 +12,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan, nan
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.bounded_forces import forces_within, impulses_of_impact
+from centrode.dynamics.forward_dynamics.change_points import Detour
 from centrode.dynamics.forward_dynamics.contacts import (
     AT_LEAST,
     AT_MOST,
@@ -55,6 +56,8 @@ from centrode.dynamics.forward_dynamics.motion_steps import (
     STICKS,
     TOUCHES,
     Event,
+    ImpactRecord,
+    Transition,
 )
 from centrode.dynamics.load_coordinates import Turn
 from centrode.errors import InputError, MotionError
@@ -71,10 +74,6 @@ from centrode.numerics.initial_value_problems import (
 from centrode.numerics.integrators import Integrator
 from centrode.numerics.python_functions import Function, python_function
 from centrode.numerics.search import zero_between
-
-if TYPE_CHECKING:
-    from centrode.dynamics.forward_dynamics.change_points import Detour
-    from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -171,24 +170,51 @@ def row_of(state: Array) -> Array:
     return row
 
 
+class WatchedMotion(Protocol):
+    """What finding events needs of a motion: its equations, their initial value problem, and functions of a state."""
+
+    @property
+    def equations(self) -> EquationsOfMotion:
+        """The equations with their numbers."""
+
+    @property
+    def names(self) -> MotionNames:
+        """Names of what is carried from step to step."""
+
+    @property
+    def problem(self) -> InitialValueProblem:
+        """The initial value problem."""
+
+    @property
+    def contact_function(self) -> Function:
+        """What contacts feel at one state."""
+
+    @property
+    def closing_function(self) -> Function:
+        """What a state ends with behind an event."""
+
+
 @dataclass
 class EventWatch:
     """Finds events of one motion, and sets the modes behind them.
 
     Attributes
     ----------
-    integration : what takes the steps
+    integration : the motion whose steps are taken
     take : the integrator
     parameters : (parameters, 1) of its steps
     rate : what speeds are compared with [1/s]
     events : what has happened
+    transitions : where modes may have changed, the start first
     """
 
-    integration: MotionIntegration
+    integration: WatchedMotion
     take: Integrator
     parameters: Array
     rate: float
     events: list[Event] = field(default_factory=list)
+    transitions: list[Transition] = field(default_factory=list)
+    _impact_now: ImpactRecord | None = None
     _at_once: int = 0
     _last: float = -inf
 
@@ -244,6 +270,10 @@ class EventWatch:
     def _numbers(self) -> list[float]:
         return [float(x) for x in self.parameters[:, 0]]
 
+    def felt_at(self, row: Array) -> ContactForces:
+        """What contacts feel at a row (1 + carried), the time first."""
+        return self._feel(float(row[0]), row[1:].tolist())
+
     def _feel(self, time: float, carried: Sequence[float]) -> ContactForces:
         equations = self.integration.equations
         found = self.integration.contact_function([time, *self._numbers, *carried])
@@ -272,6 +302,7 @@ class EventWatch:
         Raises InputError where a stop is violated there, or what is clamped moves.
         """
         carried = [float(x) for x in state[HEADER:, 0]]
+        before = row_of(state)
         felt = self._feel(float(state[0, 0]), carried)
         for k, contact in enumerate(self.contacts):
             value, tolerance = float(felt.values[k]), TOUCHING * self.units[k]
@@ -298,7 +329,13 @@ class EventWatch:
             for k, value in enumerate(felt.conditions):
                 side = float(np.sign(value if abs(value) > ROUNDING else later[k])) or 1.0
                 started[self._places[self.integration.names.sides[k]], 0] = side
+        self._record(before, started, frozenset(), 0)
         return started
+
+    def _record(self, before: Array, behind: Array, due: frozenset[int], told: int) -> None:
+        """Keep a transition, whose events are those behind the first `told` ones."""
+        noted = tuple(self.events[told:])
+        self.transitions.append(Transition(before, row_of(behind), due, self._impact_now, noted))
 
     def _set(self, state: Array, what: str, number: int, value: float) -> None:
         state[self._mode_places[what][number], 0] = value
@@ -439,13 +476,14 @@ class EventWatch:
         if self._at_once > MOST_AT_ONCE:
             what = _("at {time:.9g} s events follow one another without end").format(time=time)
             raise MotionError("[simulation]", what, _("look at the stops and frictions there"))
-        row, ends = row_of(found), False
+        row, ends, told = row_of(found), False, len(self.events)
         for number in due:
             guard = self.guards[number]
             if guard.kind == CONDITION:
                 ends = self._meet_condition(found, guard.number) or ends
         behind = self._behind(found, due)
         behind[1, 0] = size
+        self._record(row, behind, due, told)
         return row, behind, ends
 
     def _meet_condition(self, state: Array, number: int) -> bool:
@@ -471,15 +509,19 @@ class EventWatch:
 
     def release(self, state: Array, time: float) -> Array:
         """The state behind the instant at which clamps let go."""
+        before, told = row_of(state), len(self.events)
         for k, contact in enumerate(self.contacts):
             if contact.kind == CLAMP and isinstance(contact.until, float) and contact.until <= time:
                 self.let_go(state, k)
-        return self._behind(state, frozenset())
+        behind = self._behind(state, frozenset())
+        self._record(before, behind, frozenset(), told)
+        return behind
 
     def _behind(self, state: Array, due: frozenset[int]) -> Array:
         """The state with speeds behind impacts, and modes that fit its forces."""
         state = state.copy()
         time = float(state[0, 0])
+        self._impact_now = None
         guards = [self.guards[k] for k in due]
         # a stop that has been pressed opens, a contact that has stuck slips
         let_go = {
@@ -582,6 +624,8 @@ class EventWatch:
             then = now + matrix @ more
             self._apply(state, behind, numbers, signs * more, 0.5 * more * (now + then))
             behind = self._feel(time, state[HEADER:, 0].tolist())
+        ends = tuple(settled[numbers[place]] for place in resting)
+        self._impact_now = ImpactRecord(tuple(numbers), signs, before, after, impulses, tuple(resting), ends)
         for place, k in enumerate(numbers):
             if k not in hits and impulses[place] <= 0.0:
                 continue
@@ -631,6 +675,10 @@ class EventWatch:
             return nan
         whole = -2.0 * speed / free / (1.0 - restitution)
         return whole if whole * self.rate < ACCUMULATED else nan
+
+    def acceleration_at(self, row: Array, felt: ContactForces, number: int) -> float:
+        """Acceleration of a contact's coordinate at a row (1 + carried) with the forces of all others."""
+        return self._acceleration(np.concatenate([np.zeros(HEADER - 1), row])[:, None], felt, number)
 
     def _acceleration(self, state: Array, felt: ContactForces, number: int) -> float:
         """Acceleration of a contact's coordinate with the forces of all others."""

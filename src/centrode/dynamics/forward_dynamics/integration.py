@@ -287,7 +287,9 @@ class MotionIntegration:
             reached = float(kept[-1][-1, 0]) if len(kept[-1]) else duration
             told = [one for one in watch.events if one.time <= reached]
             events = sorted([*events, *told], key=lambda one: one.time)
-        return MotionSteps(np.concatenate(kept).T, ended, cause, attempts, tuple(events), tuple(detours))
+        changed = () if watch is None else tuple(watch.transitions)
+        rows_of_all = np.concatenate(kept).T
+        return MotionSteps(rows_of_all, ended, cause, attempts, tuple(events), tuple(detours), changed)
 
     def implicit_steps(
         self,

@@ -49,6 +49,51 @@ class Event(NamedTuple):
     lost: float = nan
 
 
+class ImpactRecord(NamedTuple):
+    """Of what impulses of stops and clamps at one instant were made, by c contacts that touched.
+
+    Attributes
+    ----------
+    numbers : of the contacts
+    signs : (c), the sense along their coordinates in which they push
+    before, after : (c), speeds away from the bounds
+    impulses : (c) [N s or N m s], without those that bring what rests to rest
+    resting : places among the c of those that came to rest at once
+    settled : times [s] after which their last small impacts have come to an end
+    """
+
+    numbers: tuple[int, ...]
+    signs: Array
+    before: Array
+    after: Array
+    impulses: Array
+    resting: tuple[int, ...]
+    settled: tuple[float, ...]
+
+
+class Transition(NamedTuple):
+    """An instant at which modes may change: the start, an event, or a clamp that lets go.
+
+    Attributes
+    ----------
+    before, behind : (1 + carried), the time first
+    due : numbers of the guards that have passed zero; none at the start, and where a clamp lets go by the clock
+    impact : of what impulses were made; None without any
+    events : what was noted then
+    """
+
+    before: Array
+    behind: Array
+    due: frozenset[int]
+    impact: ImpactRecord | None
+    events: tuple[Event, ...]
+
+    @property
+    def time(self) -> float:
+        """When [s]."""
+        return float(self.behind[0])
+
+
 @dataclass(frozen=True)
 class MotionSteps:
     """The steps of an integration: what was reached after each, the start first.
@@ -60,6 +105,7 @@ class MotionSteps:
     cause : sentence that says why it ended before its duration; None where it did not
     attempts : steps tried
     events, detours : near misses and crossings; pieces of motion around the change points that were passed
+    transitions : of a motion with contacts or conditions, that at the start first
     between : times -> what is carried, of an implicit scheme; None where a step of the scheme itself gives it
     """
 
@@ -69,4 +115,5 @@ class MotionSteps:
     attempts: int
     events: tuple[Event, ...] = ()
     detours: tuple[Detour, ...] = ()
+    transitions: tuple[Transition, ...] = ()
     between: Callable[[Array], Array] | None = None

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,11 @@ import xarray as xr
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.trajectory import trajectory_points
+from centrode.dynamics.sensitivities.event_derivatives import ContactNumbers
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
 from centrode.dynamics.simulation.multibody_motion import multibody_setting
 from centrode.dynamics.state import length_unit
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model.files import value_at, with_value
@@ -49,12 +50,45 @@ class MotionGradients:
     paths : of the numbers
     motion : coordinates and their derivatives
     position, velocity : (n, k, points, axes) derivatives of places and velocities of points
+    at_events : places, velocities and their derivatives at the events themselves, before them
     """
 
     paths: tuple[str, ...]
     motion: ChangedMotion
     position: Array
     velocity: Array
+    at_events: PointsAtEvents
+
+
+@dataclass(frozen=True)
+class PointsAtEvents:
+    """Points at e events, before these, with derivatives by k numbers.
+
+    Attributes
+    ----------
+    places, velocities : (e, points, axes) [m, m/s; on the sphere of radius 1 without a unit]
+    place_changes, velocity_changes : (e, k, points, axes)
+    """
+
+    places: Array
+    velocities: Array
+    place_changes: Array
+    velocity_changes: Array
+
+
+class PreparedChange(NamedTuple):
+    """How what is prepared changes with a number of the description.
+
+    Attributes
+    ----------
+    numbers : of the equations, by their variables
+    start : of the initial state
+    contacts : of the numbers of contacts
+    """
+
+    numbers: dict[str, float]
+    start: InitialState
+    contacts: ContactNumbers
 
 
 def motion_gradients(
@@ -79,13 +113,33 @@ def motion_gradients(
         raise InputError("gradients", what, _("give 1 to {most} paths").format(most=MOST_NUMBERS))
     setting = multibody_setting(described, settings)
     start = setting.free.initial(setting.speeds, setting.start)
-    changes = [_change(described, setting.free, path) for path in paths]
-    equations = VariationalEquations(setting.free, tuple(numbers for numbers, _state in changes))
-    motion = equations.motion(
-        start, [state for _numbers, state in changes], times, settings.tolerance, executor
+    changes = [_prepared_change(described, setting.free, path) for path in paths]
+    numbers = tuple(one.numbers for one in changes)
+    equations = VariationalEquations(
+        setting.free,
+        numbers,
+        tuple(one.contacts for one in changes),
+        tuple(value_at(described, path) for path in paths),
     )
-    position, velocity = _of_points(setting.free, motion, [numbers for numbers, _state in changes])
-    return MotionGradients(tuple(paths), motion, position, velocity)
+    motion = equations.motion(
+        start, [one.start for one in changes], times, settings.tolerance, executor, setting.duration
+    )
+    _places, _velocities, position, velocity = _of_points(setting.free, motion, numbers)
+    at_events = PointsAtEvents(*_of_points(setting.free, _motion_at_events(motion), numbers))
+    return MotionGradients(tuple(paths), motion, position, velocity, at_events)
+
+
+def _motion_at_events(motion: ChangedMotion) -> ChangedMotion:
+    """A motion at its events instead of its instants: its derivatives are those of the states at the events."""
+    size, count = motion.coordinates.shape[1], motion.coordinate_changes.shape[1]
+    events = motion.events
+    return ChangedMotion(
+        np.array([one.event.time for one in events]),
+        np.array([one.coordinates for one in events]).reshape(len(events), size),
+        np.array([one.speeds for one in events]).reshape(len(events), size),
+        np.array([one.coordinate_changes for one in events]).reshape(len(events), count, size),
+        np.array([one.speed_changes for one in events]).reshape(len(events), count, size),
+    )
 
 
 def _prepared_motion(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
@@ -95,7 +149,7 @@ def _prepared_motion(described: Mechanism, path: str, value: float) -> tuple[Fre
     return setting.free, setting.free.initial(setting.speeds, setting.start)
 
 
-def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str, float], InitialState]:
+def _prepared_change(described: Mechanism, free: FreeMotion, path: str) -> PreparedChange:
     """How the numbers of the equations and the initial state change with a number of the description."""
     value = value_at(described, path)
     step = STEP * (abs(value) or 1.0)
@@ -103,6 +157,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
     slopes = np.zeros(len(variables.parameters))
     size = len(free.coordinates)
     places, speeds = np.zeros(size), np.zeros(size)
+    contacts = ContactNumbers(*np.zeros((len(ContactNumbers._fields), len(free.equations.contacts))))
     for count, weight in WEIGHTS:
         for sense in (1.0, -1.0):
             other, state = _prepared_motion(described, path, value + sense * count * step)
@@ -113,6 +168,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
             slopes += share * variables.values(other.equations)[:, 0]
             places += share * state.coordinates
             speeds += share * state.speeds
+            contacts = contacts.at_step(ContactNumbers.of(other.equations), share)
     # what rounding makes of numbers that do not change is no change
     here = np.abs(variables.values(free.equations)[:, 0])
     changes = {
@@ -120,13 +176,26 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
         for name, x, size_of in zip(variables.parameters, slopes, here, strict=True)
         if abs(x) * step > 1e-13 * size_of and abs(x) > 0.0
     }
-    return changes, InitialState(places, speeds)
+    # what rounding leaves of numbers that stay is nothing
+    own = ContactNumbers.of(free.equations)
+    kept = (
+        np.where(np.abs(one) * step > 1e-13 * np.abs(number), one, 0.0)
+        for one, number in zip(contacts, own, strict=True)
+    )
+    contacts = ContactNumbers(*kept)
+    if not (changes or np.any(places) or np.any(speeds) or any(np.any(one) for one in contacts)):
+        what = _("the motion does not depend on it, or by a formula whose numbers are not followed")
+        raise NotComputedYet(path, what, _("compare motions whose numbers differ a little"))
+    return PreparedChange(changes, InitialState(places, speeds), contacts)
 
 
 def _of_points(
     free: FreeMotion, motion: ChangedMotion, changes: Sequence[Mapping[str, float]]
-) -> tuple[Array, Array]:
-    """Derivatives (n, k, points, axes) of places and velocities, which depend on numbers by themselves too."""
+) -> tuple[Array, Array, Array, Array]:
+    """Places and velocities (n, points, axes), and their derivatives (n, k, points, axes).
+
+    They depend on the numbers by themselves too.
+    """
     integration = free.integration
     variables, equations, m = integration.variables, integration.variables.equations, EXPRESSIONS
     size = len(free.coordinates)
@@ -144,10 +213,11 @@ def _of_points(
     direction = {one: variable(f"change of {one.detail}") for one in (*q, *w)}
     direction |= {variable(name): variable(f"change of {name}") for name in variables.parameters}
     (derived,) = directional_derivatives(nodes, [direction])
-    graph = Graph({str(k): as_node(x) for k, x in enumerate(derived)})
+    shown = [*nodes, *(as_node(x) for x in derived)]
+    graph = Graph({str(k): node for k, node in enumerate(shown)})
     numbers = dict(zip(variables.parameters, variables.values(free.equations)[:, 0].tolist(), strict=True))
     n, axes = len(motion.times), len(jets) // len(points)
-    found = np.zeros((2, len(changes), n, len(points), axes))
+    found = np.zeros((4, len(changes), n, len(points), axes))
     for k, change in enumerate(changes):
         values: dict[str, Any] = {"time": motion.times} | numbers
         values |= {f"change of {name}": change.get(name, 0.0) for name in variables.parameters}
@@ -159,10 +229,12 @@ def _of_points(
                 f"change of speed {i}": motion.speed_changes[:, k, i],
             }
         out = evaluate(graph, values)
-        rows = np.array([np.broadcast_to(out[str(j)], n) for j in range(len(nodes))])
-        found[:, k] = rows.reshape(2, len(points), axes, n).transpose(0, 3, 1, 2)
-    scaled = found * 1.0 / length_unit(free.mechanism)
-    return scaled[0].transpose(1, 0, 2, 3), scaled[1].transpose(1, 0, 2, 3)
+        rows = np.array([np.broadcast_to(out[str(j)], n) for j in range(len(shown))])
+        found[:, k] = rows.reshape(4, len(points), axes, n).transpose(0, 3, 1, 2)
+    places, velocities, place_changes, velocity_changes = found * 1.0 / length_unit(free.mechanism)
+    return (
+        places[0], velocities[0], place_changes.transpose(1, 0, 2, 3), velocity_changes.transpose(1, 0, 2, 3)
+    )  # fmt: skip
 
 
 def add_gradients(
@@ -185,17 +257,19 @@ def gradient_variables(run: xr.Dataset, gradients: MotionGradients) -> dict[str,
 
     motion = gradients.motion
     by = ("sample", "number")
-    return {
-        "coordinate_gradient": vocabulary_variable(
-            "coordinate_gradient", (*by, "coordinate"), over_samples(motion.coordinate_changes)
-        ),
-        "speed_gradient": vocabulary_variable(
-            "speed_gradient", (*by, "coordinate"), over_samples(motion.speed_changes)
-        ),
-        "position_gradient": vocabulary_variable(
-            "position_gradient", (*by, "point", "axis"), over_samples(gradients.position)
-        ),
-        "point_speed_gradient": vocabulary_variable(
-            "point_speed_gradient", (*by, "point", "axis"), over_samples(gradients.velocity)
-        ),
+    found = {
+        "coordinate_gradient": ((*by, "coordinate"), over_samples(motion.coordinate_changes)),
+        "speed_gradient": ((*by, "coordinate"), over_samples(motion.speed_changes)),
+        "position_gradient": ((*by, "point", "axis"), over_samples(gradients.position)),
+        "point_speed_gradient": ((*by, "point", "axis"), over_samples(gradients.velocity)),
     }
+    if motion.events and run.sizes.get("occasion") == len(motion.events):
+        there, of_each = gradients.at_events, ("occasion", "number")
+        found |= {
+            "occasion_position": (("occasion", "point", "axis"), there.places),
+            "occasion_point_speed": (("occasion", "point", "axis"), there.velocities),
+            "occasion_time_gradient": (of_each, np.array([one.time_changes for one in motion.events])),
+            "occasion_position_gradient": ((*of_each, "point", "axis"), there.place_changes),
+            "occasion_point_speed_gradient": ((*of_each, "point", "axis"), there.velocity_changes),
+        }
+    return {name: vocabulary_variable(name, dims, values) for name, (dims, values) in found.items()}

@@ -10,6 +10,7 @@ Analysis, 3rd ed., 2010, chapter 7.)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -19,12 +20,14 @@ import numpy.typing as npt
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_position import residuals_and_rows, units_of
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
+from centrode.dynamics.forward_dynamics.trajectory import Trajectory
 from centrode.dynamics.sensitivities.variational_equations import ChangedMotion, VariationalEquations
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.motion_parameter import constant_speed_of
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.initial_value_problems import STEP, TIME
+from centrode.numerics.python_integrations import PythonIntegration
 from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -39,6 +42,8 @@ FARTHEST = 0.3
 INDIFFERENT = 1e-4
 """A multiplier as near to 1 says that a neighbouring motion comes back as well."""
 RANK = 1e-9
+LIKE = 0.02
+"""States at two events that differ by less, in rad, lengths and shares of the fastest speed, may be of one regime."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +117,10 @@ def periodic_motion(free: FreeMotion, start: InitialState, run_in: float) -> Per
         return search.solve(InitialState(begin.coordinates + whole, begin.speeds), period, None)
     instants = np.linspace(0.0, run_in, 4001)
     run = free.integrate(start, run_in, TOLERANCE, at=instants)
-    number, begin_at, period = search.last_turn(run.time, run.coordinates)
+    if search.turns_twice(run.coordinates):
+        number, begin_at, period = search.last_turn(run.time, run.coordinates)
+    else:
+        number, begin_at, period = search.last_recurrence(start, run)
     ahead = free.integrate(start, begin_at, TOLERANCE, at=[begin_at])
     return search.solve(InitialState(ahead.coordinates[0], ahead.speeds[0]), period, number)
 
@@ -144,15 +152,58 @@ class _RegimeSearch:
             raise MotionError("[simulation]", what, _("let them be whole multiples of the slowest"))
         return 2.0 * np.pi / slowest
 
-    def last_turn(self, times: Array, coordinates: Array) -> tuple[int, float, float]:
-        """The angle that turns most, when it begins its last whole turn, and how long that takes."""
-        turned = np.where(self.angles, np.abs(coordinates[-1] - coordinates[0]), 0.0)
-        number = int(np.argmax(turned)) if len(turned) else 0
-        if not len(turned) or turned[number] < 4.0 * np.pi:
+    def turned(self, coordinates: Array) -> Array:
+        """By how much angles have turned (coordinates); zero of displacements."""
+        return np.where(self.angles, np.abs(coordinates[-1] - coordinates[0]), 0.0)
+
+    def turns_twice(self, coordinates: Array) -> bool:
+        """Whether something turns all the way round twice."""
+        return bool(np.max(self.turned(coordinates), initial=0.0) >= 4.0 * np.pi)
+
+    def last_recurrence(self, start: InitialState, run: Trajectory) -> tuple[int, float, float]:
+        """What moves fastest in the longest free flight between two like events, an instant there, and their distance.
+
+        Events that stops and friction make in like states tell a period where nothing turns.
+        """
+        events = [event for event in run.events if event.part and event.time <= run.time[-1]]
+        times = np.array([event.time for event in events])
+        last = (events[-1].kind, events[-1].part) if events else None
+        like = [k for k, event in enumerate(events[:-1]) if (event.kind, event.part) == last]
+        earlier = self._latest_alike(start, run, times, like) if like else None
+        if earlier is None:
             what = _(
-                "no regime is sought: nothing turns all the way round twice, and no drive keeps its speed"
+                "no regime is sought: nothing turns all the way round twice, no drive keeps its speed, and no event "
+                "recurs"
             )
             raise MotionError("[simulation]", what, _("give a longer duration, or keep a drive"))
+        return self._in_free_flight(start, times[earlier:])
+
+    def _latest_alike(
+        self, start: InitialState, run: Trajectory, times: Array, candidates: Sequence[int]
+    ) -> int | None:
+        """The latest of some events whose state is nearly that of the last event."""
+        states = self.free.integrate(start, float(run.time[-1]), TOLERANCE, at=times)
+        fast = max(float(np.max(np.abs(run.speeds) / self.units, initial=0.0)), 1e-300)
+        apart = np.max(np.abs(states.coordinates - states.coordinates[-1]) / self.units, axis=1)
+        faster = np.max(np.abs(states.speeds - states.speeds[-1]) / self.units, axis=1) / fast
+        alike = [k for k in candidates if times[k] < times[-1] and max(apart[k], faster[k]) < LIKE]
+        return alike[-1] if alike else None
+
+    def _in_free_flight(self, start: InitialState, times: Array) -> tuple[int, float, float]:
+        """Of the longest stretch between events in which nothing is closed or sticks."""
+        middles = 0.5 * (times[1:] + times[:-1])
+        there = self.free.integrate(start, float(times[-1]), TOLERANCE, at=middles)
+        lengths = np.where(np.any(there.contact_modes != 0.0, axis=1), 0.0, np.diff(times))
+        longest = int(np.argmax(lengths))
+        if not lengths[longest] > 0.0:
+            what = _("no regime is sought: something is closed or sticks all the time")
+            raise MotionError("[simulation]", what, _("look at the events of the simulation"))
+        number = int(np.argmax(np.abs(there.speeds[longest]) / self.units))
+        return number, float(middles[longest]), float(times[-1] - times[0])
+
+    def last_turn(self, times: Array, coordinates: Array) -> tuple[int, float, float]:
+        """The angle that turns most, when it begins its last whole turn, and how long that takes."""
+        number = int(np.argmax(self.turned(coordinates)))
         course = coordinates[:, number] * np.sign(coordinates[-1, number] - coordinates[0, number])
         end = float(course[-1])
         ends = []
@@ -253,6 +304,12 @@ class _RegimeSearch:
     def accelerations(self, run: ChangedMotion) -> Array:
         """Accelerations at the end of a period."""
         equations = self.free.equations
+        if run.steps is not None:
+            # in the modes that it has there
+            integration, row = self.free.integration, run.steps.rows[:, -1]
+            given = [float(row[0]), *integration.parameters(1.0, 1.0, 1.0)[:, 0], *row[1:]]
+            rates = np.array(PythonIntegration(integration.problem).rates(given), dtype=np.float64)
+            return rates[integration.names.part(integration.names.speeds)]
         values = equations.tree.values(ARRAYS, list(run.coordinates[0]))
         terms = equations.terms(ARRAYS, values, list(run.speeds[0]), float(run.times[0]))
         return np.array(equations.accelerations(ARRAYS, terms)[0], dtype=np.float64)

@@ -6,7 +6,7 @@ import functools
 import importlib
 from dataclasses import dataclass
 from math import tau
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,25 @@ _return_maps = functools.partial(importlib.import_module, "centrode.dynamics.sen
 
 RUN_UP = 0.01
 """Share of the regime's mean speed within which a machine has run up."""
+RECURRING = 4
+"""Events from which on a motion is looked at for a regime in which they recur."""
+AT_REST = 1e-9
+"""Speeds below this share of the greatest on the way are none."""
+
+
+class Rest(NamedTuple):
+    """How a machine has come to rest, and stays so.
+
+    Attributes
+    ----------
+    time : since the start [s]
+    coordinate : number of the generalised coordinate that has moved farthest
+    way : of that, since the start [rad or m]
+    """
+
+    time: float
+    coordinate: int
+    way: float
 
 
 @dataclass(frozen=True)
@@ -61,6 +80,10 @@ class SimulationResults:
     @property
     def run_up_time(self) -> float | None:
         """When the mean speed over a period comes and stays within `RUN_UP` of the regime [s]; None if it does not."""
+        return self.run_up_within(RUN_UP)
+
+    def run_up_within(self, share: float) -> float | None:
+        """When the mean speed over a period comes and stays within a share of the regime [s]; None if it does not."""
         if self.periodic is None or self.periodic.turning is None or self.periodic.given:
             return None
         times = self.simulation["time"].values
@@ -72,10 +95,28 @@ class SimulationResults:
         speeds = (np.interp(begins + period, times, course) - np.interp(begins, times, course)) / (
             tau * turns
         )
-        away = np.flatnonzero(np.abs(speeds - 1.0) > RUN_UP)
+        away = np.flatnonzero(np.abs(speeds - 1.0) > share)
         if len(away) and away[-1] + 1 == len(begins):
             return None
         return float(begins[away[-1] + 1]) if len(away) else 0.0
+
+    @property
+    def rest(self) -> Rest | None:
+        """When everything has come to rest for good, by friction or at stops, and how far it went; None if it has not.
+
+        A brake is friction of a given size, and this its braking: the instant is that of the last event.
+        """
+        run = self.simulation
+        if run.attrs.get("equations") != MULTIBODY or run.sizes["sample"] < 2 or not run.sizes["occasion"]:
+            return None
+        speeds, times = np.abs(run["generalised_velocity"].values), run["time"].values
+        moves = np.any(speeds > AT_REST * np.max(speeds, initial=0.0), axis=1)
+        last = float(run["occasion_time"].values[-1])
+        if not np.any(moves) or times[-1] <= last or np.any(moves & (times > last)):
+            return None
+        ways = run["generalised_coordinate"].values[-1] - run["generalised_coordinate"].values[0]
+        farthest = int(np.argmax(np.abs(ways)))
+        return Rest(last, farthest, float(ways[farthest]))
 
 
 def simulation_results(
@@ -142,12 +183,15 @@ def _with_regime(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> Sim
 
 
 def _periodic(mechanism: Mechanism, used: Simulation, run: xr.Dataset) -> PeriodicMotion | None:
-    """The regime of a motion that may have run up to one: something turns, and energy is given and taken."""
+    """The regime of a motion that may have run up to one: energy is given and taken, something turns or recurs."""
     if run.attrs["ended"] != "duration" or not run.attrs["work_sorts"].split() or run.sizes["sample"] < 2:
         return None
     sorts = set(run.attrs["work_sorts"].split())
     turned = np.abs(run["generalised_coordinate"].values[-1] - run["generalised_coordinate"].values[0])
-    if not {"friction", "drive", "other"} & sorts or not np.max(turned, initial=0.0) > 2.0 * tau:
+    if not {"friction", "drive", "other"} & sorts:
+        return None
+    # where nothing turns events may recur
+    if not np.max(turned, initial=0.0) > 2.0 * tau and run.sizes["occasion"] < RECURRING:
         return None
     try:
         setting = _multibody().multibody_setting(mechanism, used)

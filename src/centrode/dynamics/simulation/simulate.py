@@ -66,7 +66,8 @@ def simulate(
     threads : that share them; as many as there are processors by default
     gradients : paths of numbers of the description
         Also the derivatives of the motion by these, by the equations of all links: `coordinate_gradient`,
-        `speed_gradient`, `position_gradient` and `point_speed_gradient` by `number`.
+        `speed_gradient`, `position_gradient` and `point_speed_gradient` by `number`; through events too, whose own are
+        `occasion_time_gradient` and those of `occasion_position` and `occasion_point_speed`.
     at_events : bool
         Also the instants of impacts, sticking, opening and all other events, as the motion goes on behind them, by
         the equations of all links; the reduced equation has none at which anything jumps.

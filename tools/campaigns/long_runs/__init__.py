@@ -1,0 +1,1 @@
+"""Motions with stops and friction that last ten thousand seconds."""
