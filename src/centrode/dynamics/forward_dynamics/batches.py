@@ -22,6 +22,8 @@ from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import map_equations
 from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS
 from centrode.dynamics.forward_dynamics.motion_steps import BLOW_UP, CHANGE_POINT, DURATION, STEP_SIZE
+from centrode.dynamics.forward_dynamics.pressed_contacts import pressed_contacts_of
+from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import loads_of
 from centrode.dynamics.masses import masses_of
 from centrode.kinematics.path import DrivenBy
@@ -78,9 +80,10 @@ def equations_of_many(free: FreeMotion, numbers: Mapping[str, npt.ArrayLike]) ->
     # how wheels mesh is that of the description
     gearing = dimensions.gearing.with_phases(equations.numbers.gearing.phase)
     masses = masses_of(mechanism, varied, ARRAYS)
-    described = loads_of(mechanism, masses, varied)
-    loads: tuple[LoadAlong, ...] = free_loads_of(mechanism, described, ())
-    contacts = contacts_of(mechanism, dry_frictions_of(mechanism, described))
+    given = without_friction(mechanism)
+    described = loads_of(given, masses, varied)
+    loads: tuple[LoadAlong, ...] = free_loads_of(given, described, ())
+    contacts = contacts_of(mechanism, (*dry_frictions_of(given, described), *pressed_contacts_of(mechanism)))
     # forces of drives are no numbers of the description
     loads += equations.loads[len(loads) :]
     return replace(

@@ -1,0 +1,137 @@
+"""Friction by coefficients at an event: what presses each joint, and the modes that fit it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.forward_dynamics.contacts import Contact
+from centrode.dynamics.forward_dynamics.reaction_friction import greatest_press, pressed_by
+from centrode.numerics.arrays import ARRAYS
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+TIED = 1e-9
+"""Two numbers that press are equal where they differ by less than this share of the greater one."""
+
+
+class FrictionLimits(NamedTuple):
+    """Bounds of a force of friction along its coordinate [N or N m].
+
+    Attributes
+    ----------
+    forwards, backwards : forces while it slips forwards and backwards
+    least, most : while it sticks
+    """
+
+    forwards: float
+    backwards: float
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class JointPresses:
+    """Reactions of joints with friction by coefficients as functions of forces along the rows of contacts.
+
+    Attributes
+    ----------
+    numbers : of the contacts
+    contacts : these
+    base : (contacts, 2) without forces of contacts [N or N m]
+    gains : (contacts, 2, rows) by them
+    """
+
+    numbers: tuple[int, ...]
+    contacts: tuple[Contact, ...]
+    base: Array
+    gains: Array
+
+    def reactions(self, forces: Array) -> dict[int, Sequence[float]]:
+        """Reactions [N or N m] at forces along rows (rows), by the numbers of contacts."""
+        found = self.base + self.gains @ forces
+        return {
+            k: [float(x) for x in row[: len(contact.pressing.openings)]]  # type: ignore[union-attr]
+            for k, contact, row in zip(self.numbers, self.contacts, found, strict=True)
+        }
+
+    def limits(self, forces: Array) -> dict[int, FrictionLimits]:
+        """Bounds of the forces of friction at forces along rows (rows)."""
+        found = {}
+        for contact, (k, reaction) in zip(self.contacts, self.reactions(forces).items(), strict=True):
+            assert contact.pressing is not None
+            kinetic = contact.pressing.kinetic
+            slips = [
+                kinetic
+                * float(pressed_by(ARRAYS, contact, *contact.pressing.parts(reaction, sense, kinetic)))
+                for sense in (1.0, -1.0)
+            ]
+            holds = [float(greatest_press(ARRAYS, contact, reaction, sense)) for sense in (1.0, -1.0)]
+            found[k] = FrictionLimits(-slips[0], slips[1], min(-holds[0], -slips[0]), max(holds[1], slips[1]))
+        return found
+
+    def weights(
+        self, forces: Array, senses: Mapping[int, float], before: Mapping[int, tuple[float, float]]
+    ) -> dict[int, tuple[float, float]]:
+        """Weights of what presses; `before` are those that have just lost, which count no more where others tie."""
+        found = {}
+        for contact, (k, reaction) in zip(self.contacts, self.reactions(forces).items(), strict=True):
+            assert contact.pressing is not None
+            x, y = contact.pressing.parts(reaction, senses[k], contact.pressing.kinetic)
+            if contact.pressing.is_round:
+                length = float(np.hypot(x, y))
+                found[k] = (x / length, y / length) if length > 0.0 else (0.0, 0.0)
+                continue
+            choices = [((1.0, 0.0), x), ((-1.0, 0.0), -x)]
+            if len(contact.pressing.openings) > 1:
+                choices += [((0.0, 1.0), y), ((0.0, -1.0), -y)]
+            choices.sort(key=lambda choice: -choice[1])
+            size = max(abs(x), abs(y))
+            best = [pair for pair, value in choices if value >= choices[0][1] - TIED * size]
+            lost = before.get(k)
+            # where a number that presses meets another one, it is the other that grows
+            found[k] = next(pair for pair in (*best, *(pair for pair, _value in choices)) if pair != lost)
+        return found
+
+    def feedback(self, mobility: Array, held: Sequence[int], slips: Mapping[int, int]) -> dict[int, float]:
+        """How much at most each friction that slips adds to itself and others, by numbers; `slips` has their rows."""
+        found = dict.fromkeys(slips, 0.0)
+        for row in slips.values():
+            gains = self.gains @ response_with_held(mobility, held, row)
+            for contact, k, gain in zip(self.contacts, self.numbers, gains, strict=True):
+                if k in found:
+                    assert contact.pressing is not None
+                    reaction = [float(x) for x in gain[: len(contact.pressing.openings)]]
+                    parts = contact.pressing.parts(reaction, 1.0, contact.pressing.kinetic)
+                    found[k] += contact.pressing.kinetic * float(pressed_by(ARRAYS, contact, *parts))
+        return found
+
+    def slope(
+        self, mobility: Array, held: Sequence[int], number: int, row: int, mode: tuple[float, float, float]
+    ) -> float:
+        """Derivative of f + s c (w r) by the only friction f that slips; zero where its solution is lost.
+
+        `mode` is the sense s and the weights w.
+        """
+        at = self.numbers.index(number)
+        pressing = self.contacts[at].pressing
+        assert pressing is not None
+        gain = self.gains[at] @ response_with_held(mobility, held, row)
+        sense, first, second = mode
+        reaction = [float(x) for x in gain[: len(pressing.openings)]]
+        x, y = pressing.parts(reaction, sense, pressing.kinetic)
+        return float(1.0 + sense * pressing.kinetic * (first * x + second * y))
+
+
+def response_with_held(mobility: Array, held: Sequence[int], row: int) -> Array:
+    """Forces along rows (rows) that a unit of force along one brings about where others hold, its own included."""
+    forces = np.zeros(len(mobility))
+    forces[row] = 1.0
+    if held:
+        rows = list(held)
+        forces[rows] -= np.linalg.lstsq(mobility[rows][:, rows], mobility[rows, row], rcond=1e-11)[0]
+    return forces
