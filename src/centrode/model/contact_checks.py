@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def needs_events(mechanism: Description) -> bool:
-    """Whether a description has what makes events: stops, clamps, conditions, belts, friction that sticks or is pressed."""
+    """Whether a description has what makes events: stops, clamps, conditions, belts, some frictions."""
     if mechanism.stops or mechanism.clamps or mechanism.events:
         return True
     if mechanism.motors or mechanism.controllers:

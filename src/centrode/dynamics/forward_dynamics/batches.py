@@ -21,7 +21,13 @@ from centrode.dynamics.forward_dynamics.initial_position import OPEN
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import map_equations
 from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS
-from centrode.dynamics.forward_dynamics.motion_steps import BLOW_UP, CHANGE_POINT, DURATION, STEP_SIZE
+from centrode.dynamics.forward_dynamics.motion_steps import (
+    AMBIGUOUS,
+    BLOW_UP,
+    CHANGE_POINT,
+    DURATION,
+    STEP_SIZE,
+)
 from centrode.dynamics.forward_dynamics.pressed_contacts import pressed_contacts_of
 from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import loads_of
@@ -42,7 +48,7 @@ NEWTON_STEPS = 8
 ATTEMPTS = 10_000_000
 """Bound of what a lane may try."""
 NOT_ASSEMBLED = "not assembled"
-ENDS = (DURATION, CHANGE_POINT, BLOW_UP, STEP_SIZE, NOT_ASSEMBLED)
+ENDS = (DURATION, CHANGE_POINT, BLOW_UP, STEP_SIZE, NOT_ASSEMBLED, AMBIGUOUS)
 """How a lane may end, by number."""
 
 

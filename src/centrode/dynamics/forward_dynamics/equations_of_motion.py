@@ -45,6 +45,7 @@ from centrode.dynamics.forward_dynamics.joint_openings import (
     host_positions,
     opened_positions,
     step_of,
+    tooth_slope,
 )
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.reaction_friction import (
@@ -59,6 +60,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     jets_along,
     rotor_jets,
 )
+from centrode.dynamics.kinetostatics.equations import Teeth
 from centrode.dynamics.load_coordinates import Coordinate, bodies_of
 from centrode.dynamics.loads import LoadTerm, Situation
 from centrode.dynamics.masses import coordinates_of
@@ -67,7 +69,7 @@ from centrode.kinematics.path import DrivenBy
 from centrode.laws import Law
 from centrode.model.mechanism import Drive
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.structure.constraints import Constraint, Entity, Positions
+from centrode.structure.constraints import Constraint, Entity, GearRatio, Positions
 from centrode.structure.dimensions import Dimensions
 
 Number: TypeAlias = Any
@@ -199,6 +201,7 @@ class Motion:
     joints : number of a contact with such friction -> its joint
     reactions : number of such a contact -> reaction of its joint [N or N m]
     weights : number of such a contact -> weights of what presses
+    unsettled : what is left of Newton's method for them [rad^2]
     """
 
     accelerations: Vector
@@ -207,6 +210,7 @@ class Motion:
     joints: Mapping[int, PressedJoint] = field(default_factory=dict)
     reactions: Mapping[int, tuple[Number, ...]] = field(default_factory=dict)
     weights: Mapping[int, Pair] = field(default_factory=dict)
+    unsettled: Number = 0.0
 
 
 @dataclass(frozen=True)
@@ -382,6 +386,9 @@ class EquationsOfMotion:
         for constraint in self.constraints:
             hosted = host_positions(self.tree.mechanism, self.numbers, at, constraint)
             first = sum(one.size for one in self.constraints[: self.constraints.index(constraint)])
+            if isinstance(constraint, GearRatio) and constraint.gear in self._teeth.axes:
+                add_term(rows, first, tooth_slope(self._teeth, self.numbers, plain, at, constraint))
+                continue
             for k, x in enumerate(constraint.residual(jets, self.numbers, hosted)):
                 add_term(rows, first + k, x.coefficients[1] if isinstance(x, Jet) else 0.0)
         along: Vector = {}
@@ -393,6 +400,10 @@ class EquationsOfMotion:
             if k in behind:
                 add_term(rows, behind[k], slope)
         return Opening(mass, force, rows, along)
+
+    @cached_property
+    def _teeth(self) -> Teeth:
+        return Teeth.of(self.tree.mechanism)
 
     def _opened_inertia(
         self, state: JointState, opened: JointState, columns: Sequence[JointState]
@@ -661,7 +672,7 @@ class EquationsOfMotion:
             )
             for k, ways in terms.openings.items()
         }
-        sizes, reactions, weights = friction_forces(m, joints)
+        sizes, reactions, weights, unsettled = friction_forces(m, joints)
         solution, forces, measures = dict(solution), dict(forces), list(terms.measures)
         for k, size in sizes.items():
             moved, borne = responses[k]
@@ -677,7 +688,7 @@ class EquationsOfMotion:
                 for sense in (1.0, -1.0)
             ]
             measures[k] = replace(measures[k], strength=size, forwards=-presses[0], backwards=presses[1])
-        return Motion(solution, forces, measures, joints, reactions, weights)
+        return Motion(solution, forces, measures, joints, reactions, weights, unsettled)
 
     def shift_to_close(self, terms: Terms, system: MassSystem) -> Vector:
         """Change of the coordinates by one step of Newton's method of least change in the measure of M."""

@@ -68,7 +68,11 @@ from centrode.dynamics.forward_dynamics.motion_steps import (
     TOUCHES,
     Event,
 )
-from centrode.dynamics.forward_dynamics.pressed_modes import FrictionLimits, JointPresses
+from centrode.dynamics.forward_dynamics.pressed_modes import (
+    FrictionLimits,
+    JointPresses,
+    response_with_held,
+)
 from centrode.dynamics.load_coordinates import Turn
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
@@ -96,6 +100,8 @@ ROOT = 1e-16
 """Width [s] down to which the instant of an event is sought, as far as digits of the time go."""
 TOUCHING = 1e-10
 """A gap below this share of the greatest length is closed, a speed below this share of the usual one is none."""
+VANISHES = 0.01
+"""A reaction without friction below this share of that with it may be of either sign where both are lost."""
 TURNING = 1e-8
 """An acceleration above this share of the usual one is none of rounding."""
 ACCUMULATED = 2e-5
@@ -109,8 +115,6 @@ AT_THE_LIMIT = 1e-6
 """What holds is at its limit where its event says so and this share is not missing."""
 ROUNDS, PRESENT_ROUNDS, SETTLED = 2000, 200, 1e-14
 """Rounds in which forces of friction by coefficients settle, to this share of the greatest; of a guess fewer do."""
-HALF = 0.5
-"""Of two slopes that are 0 and 2 where the one solution is lost and where another one comes from infinity."""
 MOST_AT_ONCE = 100
 """Events one after the other at the same instant, beyond which none of them leads on."""
 
@@ -814,7 +818,7 @@ class EventWatch:
                 if abs(away) > TURNING * self.units[k] * self.rate**2:
                     self._set(state, "sense", k, float(np.sign(away)))
                     fast.remove(k)
-                    held = {one: bound for one, bound in held.items() if one != k}
+                    del held[k]
         held = {k: bound for k, bound in held.items() if k not in fast}
         found = {k: 0.0 for k in fast if self.contacts[k].kind != STOP}
         for k in [one for one in held if one in let_go and self.contacts[one].kind == FRICTION]:
@@ -927,13 +931,27 @@ class EventWatch:
         worst = max(feedback, key=lambda k: feedback[k])
         what = _("at {time:.9g} s friction at {contact} may have no or several solutions")
         if len(slips) == 1:
-            first, second = self._get(state, "first", worst), self._get(state, "second", worst)
-            mode = (self._get(state, "sense", worst), first, second)
-            slope = felt.presses.slope(felt.mobility, held, worst, self._rows[worst], mode)
-            what = _("at {time:.9g} s friction at {contact} has several solutions from there on")
-            if slope < HALF:
+            count = self._solutions(state, felt, worst, held)
+            if count == 0:
                 what = _("at {time:.9g} s friction at {contact} has no solution from there on")
+            elif count is not None:
+                what = _("at {time:.9g} s friction at {contact} has several solutions from there on")
         return what.format(time=time, contact=self.contacts[worst].label)
+
+    def _solutions(self, state: Array, felt: ContactForces, number: int, held: Sequence[int]) -> int | None:
+        """How many forces of the only friction that slips fit; None where what presses without it vanishes too."""
+        presses, rows = felt.presses, list(held)
+        forces = np.zeros(len(self._rows))
+        if rows:
+            forces[rows] = np.linalg.lstsq(felt.mobility[rows][:, rows], -felt.free[rows], rcond=1e-11)[0]
+        at = presses.numbers.index(number)
+        response = response_with_held(felt.mobility, held, self._rows[number])
+        reaction = presses.base[at] + presses.gains[at] @ forces
+        sense = self._get(state, "sense", number) or 1.0
+        slipping = presses.reactions(self._present_forces(state, felt))[number]
+        if np.max(np.abs(reaction)) <= VANISHES * np.max(np.abs(slipping)):
+            return None
+        return presses.solutions(number, reaction, presses.gains[at] @ response, sense)
 
     def _bounds(self, felt: ContactForces, number: int, bound: float = 0.0) -> tuple[float, float]:
         """Least and greatest force of a contact that is held."""

@@ -22,14 +22,16 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     SpanningTree,
     TurnedLink,
 )
+from centrode.dynamics.kinetostatics.equations import Teeth
 from centrode.dynamics.state import Centre, Radial
-from centrode.geometry.plane import PlanePose, place, rotate_vector
+from centrode.geometry.plane import PlanePose, place, reversed_rotor, rotate_vector, subtract
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import (
     Constraint,
     Contact,
     DisplacementDrive,
+    GearRatio,
     NoSlip,
     NoTurning,
     PointInLink,
@@ -152,6 +154,24 @@ def host_positions(
     moved = at.copy()
     moved.points[point] = _place_in(numbers, at, link, point)
     return moved
+
+
+def tooth_slope(
+    teeth: Teeth, numbers: Dimensions, plain: Positions, at: Positions, gear: GearRatio
+) -> Number:
+    """Work along an opening of the force between the teeth of a gear, of which its equation is a unit.
+
+    The equation speaks of angles alone; the force acts where the wheels mesh.
+    """
+    total: Number = 0.0
+    for wrench in teeth.pulls(gear, plain, numbers):
+        pose, moved = plain.poses[wrench.body.name], at.poses[wrench.body.name]
+        arm = rotate_vector(subtract((wrench.at[0], wrench.at[1]), pose[0]), reversed_rotor(pose[1]))
+        shifted = place(moved, arm)
+        for force, x in zip(wrench.force, shifted, strict=True):
+            term = times(force, x.coefficients[1] if isinstance(x, Jet) else 0.0)
+            total = term if _is_plain_zero(total) else total if _is_plain_zero(term) else total + term
+    return total
 
 
 def step_of(tree: SpanningTree, constraint: Constraint) -> int | None:

@@ -30,6 +30,7 @@ from centrode.dynamics.forward_dynamics.equations_of_motion import (
     Terms,
 )
 from centrode.dynamics.forward_dynamics.reaction_friction import (
+    UNSETTLED,
     greatest_press,
     mode_margin,
     uniqueness,
@@ -359,7 +360,8 @@ def _guards(
         if guard.kind == CONDITION:
             value, floor = variable(names.sides[guard.number]) * terms.conditions[guard.number], ROUNDING
         elif guard.kind == UNIQUE:
-            value, floor = uniqueness(m, moved.joints), 0.0
+            found_at = m.less(moved.unsettled, UNSETTLED)
+            value, floor = m.where(found_at, uniqueness(m, moved.joints), -1.0), 0.0
         elif guard.kind == PRESSES:
             value, floor = _guard_of_press(guard.number, terms, moved)
         else:

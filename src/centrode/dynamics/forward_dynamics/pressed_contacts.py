@@ -25,8 +25,9 @@ from centrode.dynamics.forward_dynamics.initial_position import (
 from centrode.dynamics.forward_dynamics.joint_openings import JointOpening
 from centrode.dynamics.kinetostatics.friction import HingeBearing, Sliding
 from centrode.dynamics.kinetostatics.friction import contacts_of as rubbing_contacts_of
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
+from centrode.model.loads import BearingFriction
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import NoTurning, PointInLink, PointOnGuide
@@ -42,8 +43,13 @@ DETERMINED = 1e-7
 def pressed_contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     """Contacts with friction by a coefficient, in the order of the loads.
 
-    Raises as `kinetostatics.friction.contacts_of` does.
+    Raises
+    ------
+    InputError, NotComputedYet
+        As `kinetostatics.friction.contacts_of` does; hinges of mechanisms with pairs of gears, whose teeth press
+        the axes apart.
     """
+    _refuse_radial_forces(mechanism)
     return tuple(
         Contact(
             FRICTION,
@@ -56,6 +62,16 @@ def pressed_contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
         )
         for rubbing in rubbing_contacts_of(mechanism)
     )
+
+
+def _refuse_radial_forces(mechanism: Mechanism) -> None:
+    if not any(gear.pair is not None for gear in mechanism.gears):
+        return
+    for load in mechanism.loads:
+        if isinstance(load, BearingFriction):
+            what = _("radial forces of teeth press hinges, and simulations do not know them")
+            repair = _("give the gear by its ratio, or the value of the friction")
+            raise NotComputedYet(f"[[loads]] {load.label}", what, repair)
 
 
 def _pressing_of_hinge(bearing: HingeBearing) -> Pressing:

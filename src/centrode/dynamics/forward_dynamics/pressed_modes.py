@@ -15,6 +15,8 @@ from centrode.numerics.arrays import ARRAYS
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+BEYOND = 1.0 + 1e-6
+"""By how much a coefficient is greater where solutions are counted at the place at which their number changes."""
 TIED = 1e-9
 """Two numbers that press are equal where they differ by less than this share of the greater one."""
 
@@ -110,21 +112,36 @@ class JointPresses:
                     found[k] += contact.pressing.kinetic * float(pressed_by(ARRAYS, contact, *parts))
         return found
 
-    def slope(
-        self, mobility: Array, held: Sequence[int], number: int, row: int, mode: tuple[float, float, float]
-    ) -> float:
-        """Derivative of f + s c (w r) by the only friction f that slips; zero where its solution is lost.
+    def solutions(self, number: int, reaction: Array, gain: Array, sense: float) -> int:
+        """How many forces x >= 0 of the only friction that slips fit x = c m(r - s g x), just beyond where they change.
 
-        `mode` is the sense s and the weights w.
+        `reaction` r and `gain` g (2) are those without it and by a unit of its force along the coordinate.
         """
-        at = self.numbers.index(number)
-        pressing = self.contacts[at].pressing
+        contact = self.contacts[self.numbers.index(number)]
+        pressing = contact.pressing
         assert pressing is not None
-        gain = self.gains[at] @ response_with_held(mobility, held, row)
-        sense, first, second = mode
-        reaction = [float(x) for x in gain[: len(pressing.openings)]]
-        x, y = pressing.parts(reaction, sense, pressing.kinetic)
-        return float(1.0 + sense * pressing.kinetic * (first * x + second * y))
+        count = len(pressing.openings)
+        u, v = pressing.parts([float(x) for x in reaction[:count]], sense, pressing.kinetic)
+        a, b = (-sense * x for x in pressing.parts([float(x) for x in gain[:count]], sense, pressing.kinetic))
+        factor = BEYOND * pressing.kinetic
+        if pressing.is_round:
+            # x^2 = c^2 |r + g x|^2
+            roots = np.roots(
+                [
+                    factor**2 * (a * a + b * b) - 1.0,
+                    2.0 * factor**2 * (a * u + b * v),
+                    factor**2 * (u * u + v * v),
+                ]
+            )
+            return int(np.sum((np.abs(roots.imag) <= TIED * np.abs(roots)) & (roots.real >= 0.0)))
+        found = 0
+        for first, second in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))[: 2 * count]:
+            feed = 1.0 - factor * (first * a + second * b)
+            size = factor * (first * u + second * v) / feed if feed else -1.0
+            presses = first * (u + a * size) + second * (v + b * size)
+            greatest = max(abs(u + a * size), abs(v + b * size))
+            found += bool(size >= 0.0 and presses >= greatest - TIED * abs(greatest))
+        return found
 
 
 def response_with_held(mobility: Array, held: Sequence[int], row: int) -> Array:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from centrode.dynamics.forward_dynamics.contacts import Contact, ContactMode
 from centrode.dynamics.forward_dynamics.elimination import is_zero, times
@@ -21,8 +21,10 @@ Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 Pair: TypeAlias = tuple[Number, Number]
 
-CORRECTIONS = 5
+CORRECTIONS = 4
 """Of directions: from a step away each doubles the digits."""
+UNSETTLED = 1e-14
+"""Square of the last correction [rad^2] above which directions have not been found."""
 
 
 @dataclass(frozen=True)
@@ -65,13 +67,25 @@ class PressedJoint:
         return tuple(found)
 
 
-def friction_forces(
-    m: Namespace, joints: Mapping[int, PressedJoint]
-) -> tuple[dict[int, Number], dict[int, tuple[Number, ...]], dict[int, Pair]]:
-    """Forces along the coordinates of contacts, the reactions with them, and the weights of what presses.
+class FoundFriction(NamedTuple):
+    """Friction at one state, by the numbers of contacts.
 
-    Directions are corrected so often as they need from those of a step before.
+    Attributes
+    ----------
+    forces : along their coordinates [N or N m]
+    reactions : of their joints with them
+    weights : of what presses
+    unsettled : sum of the squares of the last corrections of directions [rad^2]
     """
+
+    forces: dict[int, Number]
+    reactions: dict[int, tuple[Number, ...]]
+    weights: dict[int, Pair]
+    unsettled: Number
+
+
+def friction_forces(m: Namespace, joints: Mapping[int, PressedJoint]) -> FoundFriction:
+    """Friction that fits the reactions; directions are corrected as often as they need from those of a step before."""
     weights: dict[int, Pair] = {k: (joint.mode.first, joint.mode.second) for k, joint in joints.items()}
     turning = [k for k, joint in joints.items() if _is_round(joint)]
     forces, reactions = _at_weights(joints, weights)
@@ -79,9 +93,12 @@ def friction_forces(
         for k in turning:
             weights[k] = _direction(m, reactions[k])
         forces, reactions = _at_weights(joints, weights)
+    unsettled: Number = 0.0
     for k in turning:
-        weights[k] = _direction(m, reactions[k])
-    return forces, reactions, weights
+        x, y = _direction(m, reactions[k])
+        unsettled = unsettled + (x - weights[k][0]) ** 2 + (y - weights[k][1]) ** 2
+        weights[k] = x, y
+    return FoundFriction(forces, reactions, weights, unsettled)
 
 
 def _is_round(joint: PressedJoint) -> bool:

@@ -505,6 +505,10 @@ def friction_of_contacts(
     state: State, free: ForceSystem, contacts: Sequence[Contact], acceleration: Array, useful: Mask
 ) -> Rubbed:
     """Friction of the contacts, from the reactions without it, at the samples where these are of use."""
+    for contact in contacts:
+        if isinstance(contact, Sliding) and contact.surface_speed:
+            what = _("friction of a belt by a coefficient is computed in simulations alone")
+            raise NotComputedYet(contact.where, what, _("remove surface_speed, or use centrode simulate"))
     system = free.system
     motions = [_motion(contact, state, system, acceleration) for contact in contacts]
     senses = np.stack([sense for sense, _slope, _turns in motions], axis=1)
