@@ -113,8 +113,8 @@ LOOKS = 33
 HALVINGS = 60
 AT_THE_LIMIT = 1e-6
 """What holds is at its limit where its event says so and this share is not missing."""
-ROUNDS, PRESENT_ROUNDS, SETTLED = 2000, 200, 1e-14
-"""Rounds in which forces of friction by coefficients settle, to this share of the greatest; of a guess fewer do."""
+ROUNDS, SETTLED = 200, 1e-13
+"""Rounds in which modes and bounds of friction by coefficients settle, to this share of the greatest."""
 MOST_AT_ONCE = 100
 """Events one after the other at the same instant, beyond which none of them leads on."""
 
@@ -863,18 +863,15 @@ class EventWatch:
     def _with_limits(
         self, state: Array, felt: ContactForces, held: dict[int, float], let_go: set[int]
     ) -> ContactForces:
-        """Bounds of friction by coefficients that fit the forces and modes which follow from them.
-
-        What presses is found by fixed points: forces of friction feed less than themselves back.
-        """
+        """Bounds of friction by coefficients that fit the forces and modes which follow from them."""
         senses = {k: self._get(state, "sense", k) for k in self._rows}
-        started = self._present_forces(state, felt)
-        felt = felt.with_limits(felt.presses.limits(started))
+        felt = felt.with_limits(felt.presses.limits(self._present_forces(state, felt)))
         for _round in range(ROUNDS):
             for k, sense in senses.items():
                 self._set(state, "sense", k, sense)
             found = self._held_forces(state, felt, dict(held), let_go) if held else {}
-            limits = felt.presses.limits(self._row_forces(state, felt, found))
+            forces = self._settled(state, felt, self._row_forces(state, felt, found), list(found))
+            limits = felt.presses.limits(forces)
             apart = max(abs(a - b) for k in limits for a, b in zip(limits[k], felt.limits[k], strict=True))
             size = max(abs(a) for k in limits for a in limits[k])
             felt = felt.with_limits(limits)
@@ -886,29 +883,29 @@ class EventWatch:
             self._set(state, "sense", k, sense)
         return felt
 
+    def _settled(self, state: Array, felt: ContactForces, forces: Array, held: Sequence[int]) -> Array:
+        """Forces along rows with friction by coefficients of what slips as great as what presses."""
+        slips = {k: (self._rows[k], self._get(state, "sense", k)) for k in self._pressed if k not in held}
+        slips = {k: (row, sense) for k, (row, sense) in slips.items() if sense}
+        return felt.presses.settled(felt.mobility, self._independent(felt, held), forces, slips)
+
+    def _independent(self, felt: ContactForces, numbers: Iterable[int]) -> list[int]:
+        """Rows of contacts: of what holds the same thing twice the first bears it, as in the steps."""
+        rows: list[int] = []
+        for k in numbers:
+            if not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return rows
+
     def _present_forces(self, state: Array, felt: ContactForces) -> Array:
         """Forces along rows in the modes that are still set."""
         active = [k for k in self._rows if self._get(state, "active", k)]
-        # of what holds the same thing twice the first bears it, as in the steps
-        rows: list[int] = []
-        for k in active:
-            if not self._follows(felt, self._rows[k], rows):
-                rows.append(self._rows[k])
-        felt = felt.with_limits(felt.presses.limits(np.zeros(len(self._rows))))
-        forces = np.zeros(len(self._rows))
-        for _round in range(PRESENT_ROUNDS):
-            before = forces
-            forces = self._row_forces(state, felt, dict.fromkeys(active, 0.0))
-            if rows:
-                right = felt.free + felt.mobility @ forces
-                forces[rows] = np.linalg.solve(felt.mobility[rows][:, rows], -right[rows])
-            if not np.all(np.abs(forces) < NEVER):
-                # what is held by next to nothing tells nothing of the others
-                return np.zeros(len(forces))
-            felt = felt.with_limits(felt.presses.limits(forces))
-            if np.max(np.abs(forces - before), initial=0.0) <= SETTLED * np.max(np.abs(forces), initial=0.0):
-                break
-        return forces
+        rows = self._independent(felt, active)
+        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self._pressed], 0.0))
+        if rows:
+            right = felt.free + felt.mobility @ forces
+            forces[rows] -= np.linalg.solve(felt.mobility[rows][:, rows], right[rows])
+        return self._settled(state, felt, forces, active)
 
     def _set_weights(
         self, state: Array, felt: ContactForces, held: Mapping[int, float], turned: Collection[int]

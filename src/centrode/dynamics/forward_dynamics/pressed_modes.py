@@ -15,6 +15,8 @@ from centrode.numerics.arrays import ARRAYS
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+NEWTON_STEPS, ROUNDING = 40, 1e-15
+"""Steps of Newton's method for friction, and share of the greatest force below which one is rounding."""
 BEYOND = 1.0 + 1e-6
 """By how much a coefficient is greater where solutions are counted at the place at which their number changes."""
 TIED = 1e-9
@@ -75,6 +77,45 @@ class JointPresses:
             holds = [float(greatest_press(ARRAYS, contact, reaction, sense)) for sense in (1.0, -1.0)]
             found[k] = FrictionLimits(-slips[0], slips[1], min(-holds[0], -slips[0]), max(holds[1], slips[1]))
         return found
+
+    def settled(
+        self, mobility: Array, held: Sequence[int], forces: Array, slips: Mapping[int, tuple[int, float]]
+    ) -> Array:
+        """Forces along rows (rows) with friction of what slips as great as what presses then; what is held follows.
+
+        Parameters
+        ----------
+        mobility, held : (rows, rows), and rows whose accelerations stay what they are
+        slips : number of a contact -> its row and its sense
+        """
+        if not slips:
+            return forces
+        at = [self.numbers.index(k) for k in slips]
+        rows, senses = [row for row, _sense in slips.values()], [sense for _row, sense in slips.values()]
+        ways = np.array([response_with_held(mobility, held, row) for row in rows])
+        gains = np.einsum("kjr,mr->kjm", self.gains[at], ways)
+        forces = forces.copy()
+        for _step in range(NEWTON_STEPS):
+            reactions = self.base[at] + self.gains[at] @ forces
+            matrix, left = np.eye(len(at)), forces[rows].copy()
+            for i, (k, sense) in enumerate(zip(at, senses, strict=True)):
+                pressing = self.contacts[k].pressing
+                assert pressing is not None
+                count, factor = len(pressing.openings), sense * pressing.kinetic
+                parts = np.array(pressing.parts(reactions[i, :count].tolist(), sense, pressing.kinetic))
+                weight = _weight(pressing.is_round, parts)
+                left[i] += factor * float(weight @ parts)
+                for j in range(len(at)):
+                    gain = pressing.parts(gains[i, :count, j].tolist(), sense, pressing.kinetic)
+                    matrix[i, j] += factor * float(weight @ np.array(gain))
+            try:
+                change = -np.linalg.solve(matrix, left)
+            except np.linalg.LinAlgError:
+                break
+            forces += change @ ways
+            if not np.max(np.abs(change)) > ROUNDING * np.max(np.abs(forces)):
+                break
+        return forces
 
     def weights(
         self, forces: Array, senses: Mapping[int, float], before: Mapping[int, tuple[float, float]]
@@ -142,6 +183,17 @@ class JointPresses:
             greatest = max(abs(u + a * size), abs(v + b * size))
             found += bool(size >= 0.0 and presses >= greatest - TIED * abs(greatest))
         return found
+
+
+def _weight(is_round: bool, parts: Array) -> Array:
+    """Derivative of what presses by its two numbers."""
+    if is_round:
+        length = float(np.hypot(*parts))
+        return parts / length if length > 0.0 else np.zeros(2)
+    greater = int(np.argmax(np.abs(parts)))
+    weight = np.zeros(2)
+    weight[greater] = np.sign(parts[greater])
+    return weight
 
 
 def response_with_held(mobility: Array, held: Sequence[int], row: int) -> Array:
