@@ -20,7 +20,12 @@ from centrode.dynamics.equilibria.equilibrium import (
     pose_variables,
     stable_first,
 )
-from centrode.dynamics.equilibria.equilibrium_search import approached, find_equilibria, settled
+from centrode.dynamics.equilibria.equilibrium_search import (
+    approached,
+    find_equilibria,
+    no_equilibrium,
+    settled,
+)
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import mode_motion, posed_motion
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
@@ -130,6 +135,10 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         places = stable_first(find_equilibria(loaded)).places
         if not 1 <= equilibrium <= len(places):
             what = _("there are {count} equilibria, and number {number} is requested")
+            if loaded.mechanism.stops:
+                what = _(
+                    "there are {count} equilibria that rest on no stop, and number {number} is requested"
+                )
             raise InputError(
                 "equilibrium",
                 what.format(count=len(places), number=equilibrium),
@@ -142,7 +151,10 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         if np.isfinite(found[0, 0]):
             return np.asarray(found[0])
     # what says why there is none
-    return np.asarray(stable_first(find_equilibria(loaded)).places[0])
+    found = stable_first(find_equilibria(loaded))
+    if not len(found.places):
+        raise no_equilibrium(found.starts)
+    return np.asarray(found.places[0])
 
 
 def _check_masses(loaded: LoadedMechanism, motions: SmallMotions) -> None:
