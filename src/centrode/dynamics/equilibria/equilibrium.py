@@ -95,8 +95,8 @@ def equilibrium(
     Dataset
         Of every `equilibrium`, counted from 1, stable ones first and near ones before those farther from the initial
         position, behind them those that rest on stops, with their `restraint_force`: positions, drives, potential
-        energy, stability, eigenvalues of the linearised equations by `root`; the intervals in which dry friction holds (docs: equilibria). With `vary` the `branch_...` of equilibria and the
-        `critical_...` values.
+        energy, stability, eigenvalues of the linearised equations by `root`; the intervals in which dry friction holds
+        (docs: equilibria). With `vary` the `branch_...` of equilibria and the `critical_...` values.
 
     Raises
     ------
