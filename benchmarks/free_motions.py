@@ -104,7 +104,7 @@ def free_motions() -> Iterator[Row]:
     # the steps alone, without what is found out before and after
     rate = free.integration.rate(start)
     state = np.concatenate([[0.0, 0.01 / rate, 0.0, 0.0], free.integration.carried_values(start)])[:, None]
-    rows = np.empty((4096, len(free.integration.problem.carried) + 1))
+    rows = np.empty((4096, len(free.integration.problem.carried_names) + 1))
     kernel, numbers = free.integration.integrator(), free.integration.parameters(DURATION, tolerance, rate)
     times = best_clock_times(
         {
@@ -197,7 +197,7 @@ def _andrews() -> tuple[float, float]:
     state = np.concatenate(
         [[0.0, min(SQUEEZED, 0.01 / rate), 0.0, 0.0], free.integration.carried_values(start)]
     )[:, None]
-    rows = np.empty((4096, len(free.integration.problem.carried) + 1))
+    rows = np.empty((4096, len(free.integration.problem.carried_names) + 1))
     kernel, numbers = free.integration.integrator(), free.integration.parameters(SQUEEZED, 1e-8, rate)
     taken = best_clock_times(
         {"steps": functools.partial(kernel.run, numbers, state, 1_000_000, rows)}, rounds=20

@@ -84,7 +84,7 @@ def _called(lever: Solver) -> Task:
     """The machine code that judges and writes, called with addresses, and NumPy's arc tangents: no Python besides."""
     plan = lever._plan
     assert isinstance(plan, DirectPlan)
-    called = plan.called
+    called = plan.called_frames
     assert called is not None
     memory = called.memory()
     assert called.move(lever.own, memory)

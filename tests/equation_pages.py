@@ -9,7 +9,7 @@ from centrode.equations.derivation import Equations
 from centrode.equations.spelling import FormulaSpelling
 from centrode.render.spelling import PlainSpelling
 from centrode.render.symbolic import spell_symbolic
-from centrode.sheets.sheet import Formula, LinearEquations, Section, SymbolList
+from centrode.sheets.sheet import Formula, Section, SheetEquations, SymbolList
 from centrode.sheets.symbolic import SymbolicLeaf
 from centrode.sheets.texts import Leaf
 from centrode.views.equations import sheet
@@ -52,7 +52,7 @@ def entries(equations: Equations, spelling: FormulaSpelling) -> Iterator[Relatio
         for block in section.blocks:
             if isinstance(block, Formula):
                 yield from (Relation(spelled(line)) for line in block.lines)
-            elif isinstance(block, LinearEquations):
+            elif isinstance(block, SheetEquations):
                 matrix = tuple(map(spelled, block.matrix))
                 yield System(matrix, spelled(block.unknowns), spelled(block.right))
 

@@ -12,7 +12,7 @@ import centrode as ct
 from centrode import render
 from centrode.model.settings import Display
 from centrode.render.files import header, shown_columns
-from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.render.table_files import PLAIN, TableSpelling
 from centrode.views.columns import motion_table
 from centrode.views.motion import motion_pictures
 

@@ -21,7 +21,7 @@ def telling_what_is_missing(load: Callable[Asked, Found]) -> Callable[Asked, Fou
     """The same function, which raises InputError where a library is not installed."""
 
     @functools.wraps(load)
-    def loaded(*args: Asked.args, **kwargs: Asked.kwargs) -> Found:
+    def report_missing(*args: Asked.args, **kwargs: Asked.kwargs) -> Found:
         try:
             return load(*args, **kwargs)
         except ModuleNotFoundError as missing:
@@ -36,7 +36,7 @@ def telling_what_is_missing(load: Callable[Asked, Found]) -> Callable[Asked, Fou
                 raise
             raise InputError("", what, repair) from missing
 
-    return loaded
+    return report_missing
 
 
 def how_to_install(*extras: str) -> str:
@@ -66,7 +66,7 @@ def held_back(library: str) -> Iterator[None]:
         _forget_absence(library)
 
 
-def admitted(name: str, *held: str) -> ModuleType:
+def admitted_module(name: str, *held: str) -> ModuleType:
     """A module, for which libraries that are held back are let in again."""
     for library in held:
         _forget_absence(library)

@@ -214,7 +214,7 @@ def test_centrodes_touch_in_the_centre(name: str, link: str, against: str) -> No
         if not np.isfinite(place).all():
             continue
         for side in (0, 1):
-            curve = layer.placed(side, sample)
+            curve = layer.placed_curve(side, sample)
             gap = np.nanmin(np.linalg.norm(curve - place, axis=1))
             far = float(np.nanmax(np.abs(np.append(curve[np.isfinite(curve)], place))))
             assert gap <= 1e4 * EPS * far  # the same centre once by its body's axes and once by the frame's

@@ -15,7 +15,7 @@ from centrode.app.frames import frame_bytes, read_frame
 from centrode.app.move_drags import place_on_way, way_of
 from centrode.app.operations import apply_operation
 from centrode.app.patches import Patch
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import initial_place
 from centrode.model.examples import example_names, example_text
@@ -25,7 +25,7 @@ EXAMPLES = [name for name in example_names() if getattr(ct.example(name), "space
 
 
 def sketch_of(text):
-    return Sketch(read_document(text, HERE))
+    return SketchParts(read_document(text, HERE))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -61,14 +61,14 @@ def test_locked_lengths_and_held_joints_hold():
     text = example_text("crank-rocker")
     locked = Patch(text, HERE)
     apply_operation(locked, {"do": "lock", "path": "links.AB.length", "on": True})
-    sketch = Sketch(locked.document)
+    sketch = SketchParts(locked.document)
     for to in ([2.0, 3.5], [4.5, 1.0], [3.0, -2.0]):
         patch = Patch(locked.text, HERE)
         apply_operation(patch, {"do": "move_point", "point": "B", "to": to})
         mechanism = ct.parse_mechanism(patch.text)
         assert mechanism.links["AB"].length == ct.parse_mechanism(text).links["AB"].length
         # nearest to the wish on the circle about A
-        a, b = (np.array(Sketch(patch.document).places[one]) for one in "AB")
+        a, b = (np.array(SketchParts(patch.document).places[one]) for one in "AB")
         assert b - a == pytest.approx(3.5 * (np.array(to) - a) / np.linalg.norm(np.array(to) - a), abs=1e-4)
     held = Patch(text, HERE)
     apply_operation(held, {"do": "set_row", "object": "B", "row": "fixed", "on": True})
@@ -81,7 +81,7 @@ def test_two_locks_leave_no_freedom():
     patch = Patch(example_text("crank-rocker"), HERE)
     apply_operation(patch, {"do": "lock", "path": "links.AB.length", "on": True})
     apply_operation(patch, {"do": "lock", "path": "links.DB.length", "on": True})
-    sketch = Sketch(patch.document)
+    sketch = SketchParts(patch.document)
     reshaped = reshape(sketch, "B", (9.0, 9.0), HERE)
     assert reshaped.places["B"] == pytest.approx(sketch.places["B"], abs=1e-4)
     assert reshaped.held

@@ -16,7 +16,7 @@ from centrode.app.drive_space import has_free_place, initial_values, place_in_dr
 from centrode.app.frames import read_frame
 from centrode.app.operations import apply_operation
 from centrode.app.patches import Patch
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.errors import InputError
 from centrode.model.examples import example_text
 
@@ -96,7 +96,7 @@ def test_derivatives_by_the_drives_are_those_of_the_positions(name):
             scale = 1.0 + np.abs(difference).max()
             assert begin.slopes[point][k] == pytest.approx(difference, abs=1e-7 * scale)
     point = prepared.mechanism.moving_points[-1]
-    size = Sketch(read_document(text, HERE)).size
+    size = SketchParts(read_document(text, HERE)).size
     there = place_in_drive_space(prepared, point, begin.points[point] + 0.03 * size, begin.values)
     patch = Patch(text, HERE)
     apply_operation(patch, {"do": "set_starts", "drives": there.values})
@@ -119,7 +119,7 @@ def test_a_hand_leads_along_the_motion_of_the_drive(name):
     values = motion.drive_value.sel(drive=drive).values if "drive" in motion.drive_value.dims else None
     values = motion.drive_value.values if values is None else values
     first = int(np.argmin(abs(values - begin[drive])))
-    size = Sketch(read_document(text, HERE)).size
+    size = SketchParts(read_document(text, HERE)).size
     present, seen = begin, 0
     for k in range(first + 1, min(first + 13, len(values))):
         if int(motion.status[k]) != 0:

@@ -12,7 +12,7 @@ import centrode as ct
 from centrode.app.documents import read_document
 from centrode.app.operations import apply_operation
 from centrode.app.patches import Patch
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.errors import InputError
 from centrode.model.examples import example_names, example_text
 
@@ -80,11 +80,11 @@ def test_a_slider_crank_is_drawn():
 
 def test_dropping_on_a_joint_makes_a_hinge_and_joining_too():
     apart = patch_of(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3]})
-    assert Sketch(apart.document).owners("E") == ["EF"]
+    assert SketchParts(apart.document).owners("E") == ["EF"]
     apply_operation(apart, {"do": "join", "points": ["E", "B"]})
-    assert sorted(Sketch(apart.document).owners("B")) == ["AB", "BC", "EF"]
+    assert sorted(SketchParts(apart.document).owners("B")) == ["AB", "BC", "EF"]
     hinged = patch_of(FOUR_BAR, {"do": "add_link", "at": [1, 0.5], "to": [2, 3], "from_point": "B"})
-    assert sorted(Sketch(hinged.document).owners("B")) == ["AB", "BC", "BE"]
+    assert sorted(SketchParts(hinged.document).owners("B")) == ["AB", "BC", "BE"]
 
 
 def test_a_point_on_a_link_makes_a_plate():
@@ -142,9 +142,9 @@ def test_deleting_takes_what_names_the_object():
 
 def test_what_loses_its_position_stays_where_it_was():
     text = example_text("crank-rocker")
-    before = Sketch(read_document(text, HERE))
+    before = SketchParts(read_document(text, HERE))
     patch = patch_of(text, {"do": "delete", "objects": ["AB"]})
-    after = Sketch(patch.document)
+    after = SketchParts(patch.document)
     assert after.places["B"] == pytest.approx(before.places["B"], abs=1e-5)
     assert after.places["A"] == pytest.approx(before.places["A"], abs=1e-5)
 
@@ -152,13 +152,13 @@ def test_what_loses_its_position_stays_where_it_was():
 def test_mirroring_twice_gives_the_same_bytes():
     mirror = {"do": "mirror", "objects": ["AB", "BC", "CD"], "axis": "x"}
     once = patch_of(FOUR_BAR, mirror)
-    assert Sketch(once.document).places["B"] == pytest.approx((1.0, 1.5))
+    assert SketchParts(once.document).places["B"] == pytest.approx((1.0, 1.5))
     assert ct.parse_mechanism(patch_of(once.text, mirror).text) == ct.parse_mechanism(FOUR_BAR)
 
 
 def test_duplicates_stand_beside():
     patch = patch_of(FOUR_BAR, {"do": "duplicate", "objects": ["AB"], "by": [0, -2]})
-    sketch = Sketch(patch.document)
+    sketch = SketchParts(patch.document)
     copies = [name for name in patch.named if name in sketch.points]
     assert [sketch.places[name] for name in copies] == [(0, -2), (1, -1.5)]
     assert copies[0] in sketch.frame_points
@@ -170,14 +170,14 @@ def test_duplicates_stand_beside():
 def test_copies_of_links_with_lengths_hang_on_a_point_of_the_frame(name, link):
     """Also of links that have none: every point of the copy stands as far away as the first one."""
     text = example_text(name)
-    before = Sketch(read_document(text, HERE))
+    before = SketchParts(read_document(text, HERE))
     chosen = (
         [link]
         if link
         else [one for one, points in before.links.items() if not set(points) & set(before.frame_points)]
     )
     patch = patch_of(text, {"do": "duplicate", "objects": chosen, "by": [0.3, -0.2]})
-    after = Sketch(patch.document)
+    after = SketchParts(patch.document)
     originals = list(dict.fromkeys(point for one in chosen for point in before.links[one]))
     copies = [one for one in patch.named if one in after.points]
     assert len(copies) == len(originals) and set(copies) & set(after.frame_points)
@@ -189,12 +189,12 @@ def test_copies_of_links_with_lengths_hang_on_a_point_of_the_frame(name, link):
 @pytest.mark.parametrize("name", ["crank-rocker", "six-bar-press", "slider-crank-offset", "watt-six-bar"])
 def test_a_length_that_is_typed_holds_the_others(name):
     text = example_text(name)
-    sketch = Sketch(read_document(text, HERE))
+    sketch = SketchParts(read_document(text, HERE))
     link = next(one for one in sketch.links if sketch.length(one) is not None)
     factor = {"mm": 1000.0, "cm": 100.0}.get(sketch.tables.get("display", {}).get("length"), 1.0)
     length = sketch.length(link) * 1.05
     patch = patch_of(text, {"do": "set", "path": f"links.{link}.length", "value": f"{length * factor!r}"})
-    after = Sketch(patch.document)
+    after = SketchParts(patch.document)
     assert after.length(link) == pytest.approx(length, rel=1e-12)
     for other in sketch.links:
         if other != link and sketch.length(other) is not None:
@@ -204,7 +204,7 @@ def test_a_length_that_is_typed_holds_the_others(name):
 
 def test_a_length_in_points_moves_what_follows():
     patch = patch_of(FOUR_BAR, {"do": "set", "path": "links.AB.length", "value": "1.4"})
-    before, after = Sketch(read_document(FOUR_BAR, HERE)), Sketch(patch.document)
+    before, after = SketchParts(read_document(FOUR_BAR, HERE)), SketchParts(patch.document)
     assert after.length("AB") == pytest.approx(1.4, abs=2e-5)
     assert after.length("BC") == pytest.approx(before.length("BC"), abs=3e-5)
     assert after.length("CD") == pytest.approx(before.length("CD"), abs=3e-5)
@@ -245,7 +245,7 @@ def test_what_cannot_be_is_refused_and_nothing_changes(operation, said):
 @pytest.mark.parametrize("name", example_names())
 def test_deleting_and_renaming_any_object_keeps_the_comments(name):
     text = example_text(name)
-    sketch = Sketch(read_document(text, HERE))
+    sketch = SketchParts(read_document(text, HERE))
     comments = [line for line in text.splitlines() if line.lstrip().startswith("#")]
     for object_name in [*sketch.points, *sketch.links][:: max(1, len(sketch.points) // 4)]:
         for operation in (

@@ -14,7 +14,7 @@ from centrode.app.documents import read_document
 from centrode.app.frames import read_frame
 from centrode.app.operations import apply_operation
 from centrode.app.patches import Patch
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.errors import InputError
 from centrode.kinematics.motion import initial_place
 from centrode.model.examples import example_text
@@ -127,7 +127,7 @@ def test_numbers_are_arcs_longitudes_and_latitudes():
     assert places["B"] == pytest.approx(at(0, 30), abs=1e-6)
     east = patch_of(FOUR_BAR, {"do": "set", "path": "points.D.longitude", "value": "92"})
     assert places_in_motion(east.text)["D"] == pytest.approx(at(92, 0), abs=1e-12)
-    rows = Sketch(read_document(FOUR_BAR, HERE))
+    rows = SketchParts(read_document(FOUR_BAR, HERE))
     assert rows.length("AB") == pytest.approx(math.pi / 6, abs=1e-12)
 
 
@@ -166,13 +166,13 @@ def test_a_copy_stands_beside_and_is_as_great():
     places = {**places_in_motion(FOUR_BAR)}
     text = tomllib.loads(patch.text)
     assert text["frame"]["points"] == ["A", "D", "G"]  # D is at rest, its copy too
-    sketch = Sketch(read_document(patch.text, HERE))
+    sketch = SketchParts(read_document(patch.text, HERE))
     assert distances(sketch.places, copies) == pytest.approx(distances(places, ["B", "C", "D"]), abs=4e-6)
     turn = np.array([[math.cos(0.2), -math.sin(0.2), 0], [math.sin(0.2), math.cos(0.2), 0], [0, 0, 1]])
     for copy, name in zip(copies, "BCD", strict=True):
         assert sketch.places[copy] == pytest.approx(turn @ np.array(places[name]), abs=2e-6)
     beside = patch_of(FOUR_BAR, {"do": "duplicate", "objects": ["C"]})
-    place = Sketch(read_document(beside.text, HERE)).places[beside.named[0]]
+    place = SketchParts(read_document(beside.text, HERE)).places[beside.named[0]]
     assert arc(place, at(60, 45)) == pytest.approx(math.pi / 12, abs=4e-6)
 
 

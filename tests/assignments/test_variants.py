@@ -90,7 +90,7 @@ def test_results_of_a_variant() -> None:
     assert results[0].row == VariantRow("seven", True, None, "", "", "", "ok")
     assert results[0].mechanism == WORKED
     assert results[0].integration is not None and results[0].integration.attrs["steps"] == 100
-    assert results[0].study is not None and results[0].study.unreached == 0
+    assert results[0].study is not None and results[0].study.unreached_samples == 0
 
 
 def test_one_wrong_variant_does_not_stop_the_others() -> None:

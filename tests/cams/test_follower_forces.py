@@ -93,7 +93,7 @@ def test_springs_leave_what_was_asked(seed):
     motion = Harmonic(high, rise, dwell, fall)
     speed, push = draw.uniform(20, 90), draw.uniform(0, 40)
     burden = Burden(draw.uniform(0.1, 2), draw.uniform(0, 3e3), draw.uniform(60, 200), draw.uniform(-10, 10))
-    scale = max(abs(burden.needed(motion.lift(np.array(motion.edges), 2), speed)))
+    scale = max(abs(burden.required_effort(motion.lift(np.array(motion.edges), 2), speed)))
     for name, found in (
         ("preload", forces.preload_needed(motion, burden, speed, push)),
         ("stiffness", forces.stiffness_needed(motion, burden, speed, push)),
@@ -131,7 +131,7 @@ def test_extremes_count_both_sides_of_joints():
 
 PHI = np.concatenate([np.linspace(a, b, 23, endpoint=False) + 1e-3 for a, b in pairwise(MOTION.edges)])
 ROWS = MOTION.lift(PHI, 2)
-PUSH = BURDEN.needed(ROWS, 25.0)
+PUSH = BURDEN.required_effort(ROWS, 25.0)
 ARM, DISTANCE, ANGLES = 0.08, 0.1, ROWS * (0.3 / HIGH)
 START = math.acos((DISTANCE**2 + ARM**2 - 0.045**2) / (2 * DISTANCE * ARM))
 MEETINGS = {

@@ -41,7 +41,7 @@ def length(i: int) -> Sum:
 def simple_sums() -> st.SearchStrategy[Sum]:
     small = st.integers(-2, 2)
     waves = st.builds(
-        lambda kind, a, b, quarters: Sum.wave(kind, angle((1, a), (2, b)).turned(quarters)),
+        lambda kind, a, b, quarters: Sum.wave(kind, angle((1, a), (2, b)).turned_by(quarters)),
         st.sampled_from(("sin", "cos")), small, small, st.integers(0, 3),
     )  # fmt: skip
     letters = st.builds(length, st.integers(1, 3))
@@ -129,7 +129,7 @@ def test_pairs_become_one_wave(name: str) -> None:
 def test_right_angles_are_signs_and_other_functions() -> None:
     for quarters in range(4):
         for kind in ("sin", "cos"):
-            turned = Sum.wave(kind, angle((1, 1)).turned(quarters))
+            turned = Sum.wave(kind, angle((1, 1)).turned_by(quarters))
             function = math.sin if kind == "sin" else math.cos
             assert number(turned) == pytest.approx(function(0.3 + quarters * math.pi / 2), abs=4 * EPS)
     assert Sum.wave("cos", Angle((), 2)) == Sum.number(-1)

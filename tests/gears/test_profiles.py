@@ -62,7 +62,7 @@ def test_pieces_join_and_slopes_are_derivatives(teeth: int, shift: float) -> Non
     profile = tooth_profile(_pair(teeth, shift).wheels[0])
     for before, after in zip(profile.pieces, profile.pieces[1:], strict=False):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
-    whole = [piece.moved(0.3, (1.0, 2.0)) for piece in whole_tooth(profile)]
+    whole = [piece.moved_by(0.3, (1.0, 2.0)) for piece in whole_tooth(profile)]
     for before, after in itertools.pairwise(whole):
         assert np.hypot(*(before.places[-1] - after.places[0])) < 1e-12
     for piece in profile.pieces:

@@ -97,13 +97,13 @@ print(*sys.modules)
 def test_a_library_that_is_held_back_is_let_in_again() -> None:
     text = """
 import sys
-from centrode.optional_packages import admitted, held_back
+from centrode.optional_packages import admitted_module, held_back
 with held_back("wave"):
     try:
         import wave
     except ModuleNotFoundError:
         print("absent")
-    print(admitted("wave", "wave").__name__, "wave" in sys.modules)
+    print(admitted_module("wave", "wave").__name__, "wave" in sys.modules)
 with held_back("wave"):
     import wave
 with held_back("colorsys"):

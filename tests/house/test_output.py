@@ -10,17 +10,17 @@ import pytest
 
 from centrode.cli.output import output_folder, write_file
 from centrode.errors import InputError
-from centrode.render.plain_table import aligned
+from centrode.render.plain_table import aligned_text
 
 
 def test_table_aligns_columns() -> None:
-    text = aligned([["OA", "0.5"], ["шатун", "12.25"]], header=["link", "length, m"], right=[1])
+    text = aligned_text([["OA", "0.5"], ["шатун", "12.25"]], header=["link", "length, m"], right=[1])
     assert text == "link   length, m\nOA           0.5\nшатун      12.25"
 
 
 def test_table_without_rows() -> None:
-    assert aligned([]) == ""
-    assert aligned([], header=["a", "b"]) == "a  b"
+    assert aligned_text([]) == ""
+    assert aligned_text([], header=["a", "b"]) == "a  b"
 
 
 def test_folder_gets_its_files_at_the_end(tmp_path: Path) -> None:

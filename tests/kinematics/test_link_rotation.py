@@ -10,7 +10,7 @@ from tools.campaigns.rotatability.cases import drawn
 
 import centrode as ct
 from centrode.errors import Status
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.machine_code.link_rotation import LinkRotation
 from centrode.kinematics.machine_code.trace import trace_motion
 from centrode.kinematics.machine_code.variables import SCALE, centre_of, varied_of, winding_of

@@ -16,7 +16,7 @@ from centrode.kinematics.plan_evaluation import EvaluationPolicy
 from centrode.kinematics.preparation import Ready, ready
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, Rounded
 from centrode.structure.constraints import Entity, Positions
 from centrode.structure.groups import Newton
 from mechanisms import EPS

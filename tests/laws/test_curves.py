@@ -13,7 +13,7 @@ from centrode.laws import CURVES, RiseCurve
 from centrode.laws.rises import Piece
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from samples import spread
 
 EPS = sys.float_info.epsilon

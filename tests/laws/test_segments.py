@@ -11,7 +11,7 @@ from centrode.errors import InputError
 from centrode.laws import CURVES, Law, LawSegment, SegmentedLaw
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

@@ -115,12 +115,12 @@ def test_a_limit_holds_steps_back_and_a_guard_stops_them(executor: str) -> None:
     problem = oscillator("limit", "guard")
     parameters = np.array([[9.0], [0.0], [1e-3], [0.1]])
     state = start(1, 5, 0.125)
-    state[HEADER + problem.carried.index("limit")] = 0.125
+    state[HEADER + problem.carried_names.index("limit")] = 0.125
     rows = np.empty((200, 6))
     found = integrator_of(problem, executor).run(parameters, state, 1000, rows)
     steps = rows[: int(found[3, 0]), 0]
     assert np.max(np.diff(steps)) <= 0.125
-    assert 2.0 < found[0, 0] <= 2.125 and found[HEADER + problem.carried.index("guard"), 0] == 1.0
+    assert 2.0 < found[0, 0] <= 2.125 and found[HEADER + problem.carried_names.index("guard"), 0] == 1.0
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)

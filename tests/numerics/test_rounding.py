@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from centrode.geometry.intersections import meet_circles
 from centrode.geometry.plane import PlaneCircle
-from centrode.numerics.rounding import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
 
 VALUE = st.floats(-100, 100).filter(lambda x: abs(x) > 1e-3)
 

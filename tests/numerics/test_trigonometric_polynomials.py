@@ -10,7 +10,7 @@ import pytest
 
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph
-from centrode.numerics.rounding import SAFETY
+from centrode.numerics.rounding_bounds import SAFETY
 from centrode.numerics.scans import evaluate
 from centrode.numerics.trigonometric_polynomials import TrigonometricPolynomial, factors_of, polynomials_of
 

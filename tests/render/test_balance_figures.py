@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 
 import centrode as ct
 from centrode.dynamics.balancing.balance import Balance
-from centrode.render.drawing.style import darkened
+from centrode.render.drawing.style import darken
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_a_balanced_mechanism_and_dark_ground(balance: Balance) -> None:
     assert still.counterweights == ()
     for found in (balance, still):
         for figure in ct.figures(found).values():
-            darkened(figure).draw_without_rendering()
+            darken(figure).draw_without_rendering()
 
 
 def test_fewer_orders_with_counterweights(balance: Balance) -> None:

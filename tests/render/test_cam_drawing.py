@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 import centrode as ct
 from centrode.cams.cam import cam_routes, path_routes_results, roller_path_results
-from centrode.render.drawing.style import darkened
+from centrode.render.drawing.style import darken
 
 EXAMPLE = ct.example("cam-from-curvature")
 
@@ -91,5 +91,5 @@ def test_symmetric_paths_and_dark_ground() -> None:
     figures = ct.figures(roller_path_results(both, 121))
     assert list(figures) == ["cam-path", "cam-curves"]
     assert texts(figures["cam-path"])[0] == "−90°"
-    dark = darkened(figures["cam-path"])
+    dark = darken(figures["cam-path"])
     assert dark.get_facecolor()[:3] < (0.2, 0.2, 0.2)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import centrode as ct
-from centrode.analysis.instant_centres.kennedy import Construction
+from centrode.analysis.instant_centres.kennedy import CentreConstruction
 from centrode.analysis.instant_centres.results import (
     CentreResults,
     CentrodeResults,
@@ -23,7 +23,7 @@ from centrode.analysis.instant_centres.results import (
 )
 from centrode.animation.animate import animate_centrodes
 from centrode.model.examples import example_text
-from centrode.render.drawing.style import darkened
+from centrode.render.drawing.style import darken
 from centrode.render.drawing.tags import Tag, write_tags
 from centrode.render.figures.pictures import figure_of
 from centrode.sheets.scenes import Scene
@@ -41,7 +41,9 @@ CROWDED = [
 A5 = (8.27, 5.83)
 
 
-def position(name: str, share: float = 0.4, pairs: Any = None) -> tuple[CentreResults, Construction, Figure]:
+def position(
+    name: str, share: float = 0.4, pairs: Any = None
+) -> tuple[CentreResults, CentreConstruction, Figure]:
     """A mechanism at one of its regular samples, with its construction and the figure of it."""
     mechanism = ct.example(name)
     motion = ct.motion(mechanism, samples=13)
@@ -192,7 +194,7 @@ def test_the_curvature_figure_shows_its_curves() -> None:
 
 def test_dark_pictures_are_light_on_dark() -> None:
     _results, _made, figure = position("slider-between-cranks")
-    figure = darkened(figure)
+    figure = darken(figure)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     picture = np.asarray(canvas.buffer_rgba())[..., :3].astype(float).mean(axis=-1)

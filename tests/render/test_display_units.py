@@ -44,8 +44,8 @@ def test_units_that_are_shown(display: Display, unit: str, factor: float, label:
 
 def test_documents_figures_files_and_terminals_follow() -> None:
     display, column = RADIANS_BESIDE_DEGREES, Column("omega", (1.0,), "rad/s")
-    assert Numbers(display).measured(2.0, "rad/s^2") == "2\u202frad/s²"
-    assert Numbers(display).measured(math.pi, "rad") == "180°"
+    assert Numbers(display).with_unit(2.0, "rad/s^2") == "2\u202frad/s²"
+    assert Numbers(display).with_unit(math.pi, "rad") == "180°"
     assert header(column, display) == "omega [rad/s]"
     label = AxisLabel(Sentence("angular velocity"), unit="rad/s")
     assert FigureSpelling(display).label(label)[1:] == ("angular velocity, rad/s", "rad/s")

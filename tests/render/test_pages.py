@@ -18,7 +18,7 @@ import centrode as ct
 from boxes import boxes, outside, overlapping
 from centrode.analysis.graphic.checks import graphic_check
 from centrode.analysis.transmission import transmission_results
-from centrode.render.drawing.style import LEAST_POINTS, darkened, house_style
+from centrode.render.drawing.style import LEAST_POINTS, darken, house_style
 from centrode.render.figures.files import save_figures
 from centrode.render.pages.page import (
     COLUMN,
@@ -137,7 +137,7 @@ def test_every_moving_point_has_its_image(pages: dict[str, dict[str, Figure]]) -
 def test_dark_pages_have_light_texts() -> None:
     figures = ct.figures(ct.graphic_analysis(ct.example("crank-rocker"), instants=[1.0]))
     for figure in figures.values():
-        dark = darkened(figure)
+        dark = darken(figure)
         assert lightness(dark.get_facecolor()) < 0.2
         for text in dark.findobj(Text):
             if text.get_text():

@@ -15,7 +15,7 @@ import centrode as ct
 from boxes import boxes, outside, overlapping
 from centrode.dynamics.force_polygons.polygons import PAPERS, ForcePolygons
 from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
-from centrode.render.drawing.style import darkened
+from centrode.render.drawing.style import darken
 from centrode.render.pages.force_polygons import SHORT
 from centrode.render.pages.force_signs import force_name
 from centrode.render.pages.page import INCH
@@ -133,4 +133,4 @@ def test_names_of_forces() -> None:
 
 def test_dark_pages(results: dict[str, ForcePolygonResults]) -> None:
     for figure in ct.figures(results["crank-rocker"]).values():
-        assert overlapping(darkened(figure)) == []
+        assert overlapping(darken(figure)) == []

@@ -10,7 +10,7 @@ import openpyxl
 import pytest
 
 import centrode as ct
-from centrode.render.table_spelling import TableSpelling, spell_with_comma
+from centrode.render.table_files import TableSpelling, spell_with_comma
 from centrode.render.workbooks import MOST_COLUMNS, MOST_ROWS, workbook_of_csv, write_workbook
 from shown_motion import columns_of, write_motion
 

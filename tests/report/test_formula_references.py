@@ -18,7 +18,7 @@ from centrode.render.document.blocks import (
     SectionBlocks,
     SystemBlock,
 )
-from centrode.render.document.numbering import number_blocks
+from centrode.render.document.captions import number_blocks
 from centrode.report.editable.latex_document import latex_document
 from centrode.report.editable.word import word_document
 from centrode.report.html.page import html_page

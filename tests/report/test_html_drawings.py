@@ -42,7 +42,7 @@ def drawn(wide: float = 3.0) -> bytes:
 
 def test_nothing_acts_or_loads() -> None:
     drawings = Drawings()
-    element = drawings.embedded(HOSTILE, 'a "label" <b>')
+    element = drawings.embedded_figure(HOSTILE, 'a "label" <b>')
     for word in (
         "script>",
         "alert",
@@ -62,7 +62,7 @@ def test_nothing_acts_or_loads() -> None:
 
 def test_names_do_not_meet() -> None:
     drawings = Drawings()
-    page = "".join(drawings.embedded(drawn(), str(k)) for k in range(3)) + drawings.shared()
+    page = "".join(drawings.embedded_figure(drawn(), str(k)) for k in range(3)) + drawings.shared_outlines()
     names = NAME.findall(page)
     wanted = {first or second for first, second in REFERENCE.findall(page)}
     assert len(names) == len(set(names))
@@ -72,16 +72,16 @@ def test_names_do_not_meet() -> None:
 
 def test_letters_are_drawn_once() -> None:
     once, thrice = Drawings(), Drawings()
-    once.embedded(drawn(), "")
+    once.embedded_figure(drawn(), "")
     for k in range(3):
-        thrice.embedded(drawn(), str(k))
-    assert thrice.shared() == once.shared()
+        thrice.embedded_figure(drawn(), str(k))
+    assert thrice.shared_outlines() == once.shared_outlines()
 
 
 def test_the_picture_is_what_it_was() -> None:
     """Every number of every line is the one that was drawn, to half a hundredth of a point."""
     before = Xml.fromstring(drawn())
-    after = Xml.fromstring(Drawings().embedded(drawn(), ""))
+    after = Xml.fromstring(Drawings().embedded_figure(drawn(), ""))
     lines = [
         one.get("d", "")
         for one in before.iter("{http://www.w3.org/2000/svg}path")
@@ -129,7 +129,7 @@ def followed(path: str) -> tuple[str, list[complex]]:
 )
 def test_paths_go_from_point_to_point(path: str, short: str) -> None:
     svg = f'<svg xmlns="http://www.w3.org/2000/svg"><path d="{path}"/></svg>'.encode()
-    root = Xml.fromstring(Drawings().embedded(svg, ""))
+    root = Xml.fromstring(Drawings().embedded_figure(svg, ""))
     assert root[0].get("d") == short
 
 
@@ -138,7 +138,7 @@ def test_letters_with_an_edge_are_one_path_and_pens_stand_once() -> None:
     twice = f'<path d="M 0 0 L 1 1" style="{edge}"/><path d="M 0 0 L 1 1" style="{letters}"/>'
     svg = f'<svg xmlns="http://www.w3.org/2000/svg"><g>{twice}</g><g>{twice}</g></svg>'.encode()
     drawings = Drawings()
-    root = Xml.fromstring(drawings.embedded(svg, ""))
+    root = Xml.fromstring(drawings.embedded_figure(svg, ""))
     assert [one.tag for one in root] == ["path", "path"]
     assert {one.get("class") for one in root} == {"p0"}
     assert drawings.style() == f"svg .p0 {{ {edge}; paint-order: stroke }}\n"
@@ -149,17 +149,17 @@ def test_a_style_that_would_end_its_rule_stays_where_it_is() -> None:
         b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M 0 0" style="fill: red} body {color: red"/></svg>'
     )
     drawings = Drawings()
-    assert "body" in drawings.embedded(svg, "") and drawings.style() == ""
+    assert "body" in drawings.embedded_figure(svg, "") and drawings.style() == ""
 
 
 def test_same_bytes() -> None:
-    assert Drawings().embedded(drawn(), "x") == Drawings().embedded(drawn(), "x")
+    assert Drawings().embedded_figure(drawn(), "x") == Drawings().embedded_figure(drawn(), "x")
 
 
 @pytest.mark.parametrize("wrong", [b"", b"not", b"<svg", b"<p>text</p>", b"\xff\xfe"])
 def test_what_is_no_figure_is_refused(wrong: bytes) -> None:
     with pytest.raises(InputError, match="a figure is not SVG"):
-        Drawings().embedded(wrong, "")
+        Drawings().embedded_figure(wrong, "")
 
 
 SQUARES = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><g clip-path="url(#c)">
@@ -175,7 +175,7 @@ def test_lines_of_one_opaque_pen_are_one_path(pen: str, paths: int) -> None:
     """Their strokes cover the same; what is filled, or seen through where it crosses, stays by itself."""
     found = [
         one.get("d")
-        for one in Xml.fromstring(Drawings().embedded(SQUARES.format(pen).encode(), "")).iter("path")
+        for one in Xml.fromstring(Drawings().embedded_figure(SQUARES.format(pen).encode(), "")).iter("path")
     ]
     assert len(found) == paths
     assert "".join(map(str, found)) == "M0 0l1 0M2 2l1 0M4 4l1 0"
@@ -184,8 +184,8 @@ def test_lines_of_one_opaque_pen_are_one_path(pen: str, paths: int) -> None:
 def test_a_text_is_there_once_however_many_figures_have_it() -> None:
     drawings = Drawings()
     for wide in (3.0, 4.0):
-        drawings.embedded(drawn(wide), "")
-    shared = Xml.fromstring(drawings.shared())
+        drawings.embedded_figure(drawn(wide), "")
+    shared = Xml.fromstring(drawings.shared_outlines())
     texts = ["".join(use.get("href", "") for use in group.iter("use")) for group in shared.iter("g")]
     assert len(texts) == len(set(texts)) >= 2
     names = {one.get("id") for one in shared.iter()}

@@ -61,7 +61,7 @@ def test_the_letters_are_those_of_the_text(name: str) -> None:
 
 
 def test_a_fraction_a_root_an_index() -> None:
-    element = formulas_of(["frac(a, sqrt(b)) + x_(1)^(2)"]).displayed("frac(a, sqrt(b)) + x_(1)^(2)")
+    element = formulas_of(["frac(a, sqrt(b)) + x_(1)^(2)"]).display_formula("frac(a, sqrt(b)) + x_(1)^(2)")
     formula = Xml.fromstring(element)
     fraction, plus, power = formula
     assert formula.get("displaystyle") == "true"

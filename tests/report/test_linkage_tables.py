@@ -153,10 +153,10 @@ def test_identities_notice_a_wrong_rate(name: str) -> None:
 def test_moments_are_exact_and_told() -> None:
     mechanism = ct.example("six-bar-press")
     (only,) = moments_of(study_of(mechanism))
-    assert only.title == "OA = 120°" and only.reached
+    assert only.title == "OA = 120°" and only.is_reached
     assert float(only.data["drive_value"][0, 0]) == pytest.approx(np.radians(120), abs=4 * EPS)
     (start,) = moments_of(study_of(ct.example("crank-rocker"), instants=()))
-    assert start.reached
+    assert start.is_reached
     driven = moments_of(study_of(ct.example("five-bar-two-drives"), instants=(0.1,)))
     assert driven[0].title.startswith("t = 0.1") and driven[0].at == 0.1
 

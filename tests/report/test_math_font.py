@@ -71,7 +71,7 @@ def test_it_has_every_letter_of_formulas(font: TTFont, name: str, language: str)
         page = entries(ct.equations(ct.example(name), ()), TypstSpelling())
         spelled = [part for one in page if isinstance(one, Relation) for part in one.parts]
         formulas = formulas_of(spelled)
-    text = "".join("".join(Xml.fromstring(formulas.displayed(one)).itertext()) for one in spelled)
+    text = "".join("".join(Xml.fromstring(formulas.display_formula(one)).itertext()) for one in spelled)
     missing = {
         one for one in text if ord(one) not in known and not unicodedata.category(one).startswith(("Z", "C"))
     }

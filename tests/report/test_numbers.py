@@ -75,11 +75,11 @@ def test_what_is_rounding_is_zero() -> None:
 
 def test_units_of_the_display() -> None:
     small = numbers(length="mm", angle="deg")
-    assert small.measured(0.5, "m") == "500\u202fmm"
-    assert small.measured(math.pi, "rad") == "180°"
-    assert small.measured(math.pi, "rad/s^2") == "180\u202f°/s²"
-    assert small.measured(2.0, "m/rad^2") == "2000\u202fmm/rad²"  # analogs stay by radian
-    assert small.measured(-2.0, "N m") == f"{MINUS}2\u202fN·m"
+    assert small.with_unit(0.5, "m") == "500\u202fmm"
+    assert small.with_unit(math.pi, "rad") == "180°"
+    assert small.with_unit(math.pi, "rad/s^2") == "180\u202f°/s²"
+    assert small.with_unit(2.0, "m/rad^2") == "2000\u202fmm/rad²"  # analogs stay by radian
+    assert small.with_unit(-2.0, "N m") == f"{MINUS}2\u202fN·m"
     assert small.head("$v$", "m/s") == "$v$, mm/s"
     assert small.head("$φ$", "rad") == "$φ$,\u00a0°"
     assert small.head("n", "1") == "n"
@@ -88,7 +88,7 @@ def test_units_of_the_display() -> None:
 
 def test_the_decimal_mark_is_the_language_s() -> None:
     with speaking("uk"):
-        assert numbers().measured(0.5, "m") == "0,5\u202fм"
+        assert numbers().with_unit(0.5, "m") == "0,5\u202fм"
         assert numbers().math(0.5) == '"0,5"'
         assert numbers().column([0.5]) == ("0,50000",)
 

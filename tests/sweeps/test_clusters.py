@@ -24,9 +24,9 @@ from centrode.cli.main import main
 from centrode.errors import CentrodeError
 from centrode.model.files import mechanism_text
 from centrode.numerics.machine_code.targets import baseline
-from centrode.render.table_spelling import TableSpelling
+from centrode.render.table_files import TableSpelling
 from centrode.report.variants.files import VariantReport, row_of_report_text
-from centrode.report.variants.folders import Task, task_of_text, task_text
+from centrode.report.variants.folders import VariantTask, task_of_text, task_text
 from centrode.sweeps import clusters, designs
 from centrode.sweeps.cluster_blocks import compute_block
 from centrode.sweeps.clusters import answer, libraries, open_cluster
@@ -444,7 +444,9 @@ def test_a_report_of_a_variant_is_told_as_text(tmp_path: Path) -> None:
     more = VariantReport(("html", "pdf"), "uk")
     variant = Variant("a", {"links.AB.length": 0.1 + 0.2})
     topology = mechanism_text(ct.example("crank-rocker"))
-    task = Task(topology, variant, tmp_path / "variant-a", True, more, TableSpelling(comma=True), "reactions")
+    task = VariantTask(
+        topology, variant, tmp_path / "variant-a", True, more, TableSpelling(comma=True), "reactions"
+    )
     text = task_text(task)
     assert task_of_text(text, VariantReport(**{**more.told, "formats": tuple(more.told["formats"])})) == task
     assert more.work is row_of_report_text

@@ -12,7 +12,7 @@ from scipy.stats import qmc
 import centrode as ct
 from centrode.sweeps import designs
 from centrode.sweeps.designs import design_of
-from centrode.sweeps.drawn_designs import Drawn, key_of, permute
+from centrode.sweeps.drawn_designs import DrawnDesigns, key_of, permute
 
 RANGES = {"links.AB.length": (3.4, 3.6), "links.DB.length": ("2.9 m", 3.1), "frame.points.D.x": (3.9, 4.1)}
 SPANS = {"a": (0.0, 1.0), "b": (2.0, 4.0)}
@@ -21,7 +21,7 @@ SPANS = {"a": (0.0, 1.0), "b": (2.0, 4.0)}
 @pytest.mark.parametrize("count", [1, 2, 1000, 4096])
 def test_sobol_points_are_those_of_scipy(count: int) -> None:
     """Bit for bit the points that the public engine draws in order."""
-    drawn = Drawn(SPANS, count, "sobol", 7)
+    drawn = DrawnDesigns(SPANS, count, "sobol", 7)
     points = qmc.Sobol(2, seed=np.random.default_rng(7)).random_base2((count - 1).bit_length())[:count]
     assert (drawn.values("a", 0, count) == points[:, 0]).all()
     assert (drawn.values("b", 0, count) == 2.0 + 2.0 * points[:, 1]).all()
@@ -31,7 +31,7 @@ def test_sobol_points_are_those_of_scipy(count: int) -> None:
 
 def test_long_sobol_sequences_stay_balanced_far_out() -> None:
     """Of 2^k points from a multiple of 2^k on each slice of 2^-k has one: the sequence's own property."""
-    drawn = Drawn(SPANS, 10**12, "sobol", 0)
+    drawn = DrawnDesigns(SPANS, 10**12, "sobol", 0)
     first = (10**12 >> 12 << 12) - 4096
     for path, (low, high) in SPANS.items():
         unit = (drawn.values(path, first, first + 4096) - low) / (high - low)
@@ -42,7 +42,7 @@ def test_long_sobol_sequences_stay_balanced_far_out() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 3, 1000, 65536, 65537])
 def test_a_hypercube_takes_each_slice_once(count: int) -> None:
-    drawn = Drawn(SPANS, count, "latin hypercube", 5)
+    drawn = DrawnDesigns(SPANS, count, "latin hypercube", 5)
     for path, (low, high) in SPANS.items():
         unit = (drawn.values(path, 0, count) - low) / (high - low)
         # a value may lie on the boundary of its slice by rounding
@@ -56,7 +56,7 @@ def test_a_hypercube_takes_each_slice_once(count: int) -> None:
 def test_hypercubes_are_random() -> None:
     """Ranks of two paths, and of neighbours, are uncorrelated: 5 standard deviations of independent ranks."""
     count = 20_000
-    drawn = Drawn(SPANS, count, "latin hypercube", 11)
+    drawn = DrawnDesigns(SPANS, count, "latin hypercube", 11)
     a, b = drawn.values("a", 0, count), drawn.values("b", 0, count)
     bound = 5.0 / np.sqrt(count)
     assert abs(np.corrcoef(a, b)[0, 1]) < bound
@@ -64,14 +64,14 @@ def test_hypercubes_are_random() -> None:
     assert abs(np.corrcoef(a, np.arange(count))[0, 1]) < bound
     within = a * count % 1.0
     assert abs(within.mean() - 0.5) < 5.0 / np.sqrt(12.0 * count)
-    assert (Drawn(SPANS, count, "latin hypercube", 12).values("a", 0, count) != a).mean() > 0.99
+    assert (DrawnDesigns(SPANS, count, "latin hypercube", 12).values("a", 0, count) != a).mean() > 0.99
 
 
 def test_values_of_a_long_design_are_made_when_they_are_read() -> None:
     mechanism = ct.example("crank-rocker")
     design = design_of(mechanism, ct.sample(RANGES, 10**12, "latin hypercube"))
-    assert isinstance(design, Drawn)
-    assert Drawn.of_text(design.text) == design
+    assert isinstance(design, DrawnDesigns)
+    assert DrawnDesigns.of_text(design.text) == design
     rows = design.rows(10**12 - 3, 10**12)
     assert [len(values) for values in rows.values()] == [3, 3, 3]
     with pytest.raises(ct.InputError, match="give a whole number from 1 to 1000000000000"):
@@ -98,7 +98,7 @@ def test_a_sweep_drawn_block_by_block(tmp_path: Path, monkeypatch: pytest.Monkey
     stored = ct.sweep(mechanism, vary, "angle.DB", 19, reduce="range", store=tmp_path / "r.zarr")
     assert (stored["links.AB.length"] == values["links.AB.length"]).all()
     with xr.open_zarr(tmp_path / "r.zarr", chunks=None) as plain:
-        assert Drawn.of_text(plain.attrs["drawn"]) == drawn
+        assert DrawnDesigns.of_text(plain.attrs["drawn"]) == drawn
     with pytest.raises(ct.InputError, match="what differs: vary"):
         ct.sweep(
             mechanism,

@@ -17,7 +17,7 @@ from centrode.kinematics.machine_code import frame_entries
 from centrode.kinematics.machine_code.frame_plan import DirectPlan
 from centrode.numerics.machine_code import PRESENT, cache
 from centrode.sweeps import solver as solvers
-from centrode.sweeps.solver import Frame, Solver
+from centrode.sweeps.solver import MotionFrame, Solver
 
 pytestmark = pytest.mark.skipif(not PRESENT, reason="llvmlite is not installed")
 FREE = {
@@ -66,7 +66,7 @@ def entry_of(solver: Solver) -> Path:
     return place / f"{name}{cache.SUFFIX}"
 
 
-def assert_same(one: Frame, other: Frame) -> None:
+def assert_same(one: MotionFrame, other: MotionFrame) -> None:
     assert one.is_clear == other.is_clear
     np.testing.assert_array_equal(one.status, other.status)
     assert set(one.arrays) == set(other.arrays)
@@ -232,7 +232,7 @@ def test_descriptions_paths_and_samples_have_entries_of_their_own() -> None:
 
 
 def test_threads_make_and_take_the_same_plan() -> None:
-    def moved(_k: int) -> Frame:
+    def moved(_k: int) -> MotionFrame:
         solver = made("six-bar-press")
         return solver.move(solver.own).copy()
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.kinematics.hinge_angles import HINGE_ANGLES
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code, rooms
 from centrode.quantities import QUANTITIES

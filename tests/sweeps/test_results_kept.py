@@ -12,10 +12,10 @@ import pytest
 
 import centrode as ct
 from centrode.numerics import machine_code, rooms
-from centrode.sweeps.solver import MEMORIES, Frame
+from centrode.sweeps.solver import MEMORIES, MotionFrame
 
 COMPILED = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
-PARTS: dict[str, Callable[[Frame], Any]] = {
+PARTS: dict[str, Callable[[MotionFrame], Any]] = {
     "the frame": lambda frame: frame,
     "its arrays": lambda frame: frame.arrays,
     "an array": lambda frame: frame.position,
@@ -35,7 +35,7 @@ NAMES = {
 
 def numbers(part: Any) -> list[np.ndarray]:
     """All numbers of a part, copied."""
-    if isinstance(part, Frame):
+    if isinstance(part, MotionFrame):
         return [x.copy() for x in part.arrays.values()]
     if isinstance(part, dict):
         return [x.copy() for x in part.values()]

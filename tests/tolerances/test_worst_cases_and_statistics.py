@@ -11,7 +11,7 @@ import pytest
 import centrode as ct
 from centrode.model.tolerances import Tolerances
 from centrode.tolerances.dimension_limits import DimensionLimits
-from centrode.tolerances.statistical import draw_deviations, propagated, yield_of
+from centrode.tolerances.statistical import draw_deviations, propagated_output, yield_of
 from centrode.tolerances.worst_case import linear_extent
 
 GRADIENT = {
@@ -105,7 +105,7 @@ def test_linear_extent_and_propagation_by_hand() -> None:
     limits = DimensionLimits(("a", "b"), np.zeros(2), np.array([-1.0, 0.0]), np.array([2.0, 4.0]), "uniform")
     extent = linear_extent(np.array([3.0, -1.0]), limits.lower, limits.upper)
     assert (float(extent.lower), float(extent.upper)) == (-7.0, 6.0)
-    found = propagated(np.array([3.0, -1.0]), limits)
+    found = propagated_output(np.array([3.0, -1.0]), limits)
     assert float(found.shift) == 3 * 0.5 - 2.0
     assert float(found.deviation) == pytest.approx(math.sqrt(9 * 1.5**2 / 3 + 4 / 3), rel=1e-15)
     assert found.contributions == pytest.approx([0.8350515463917526, 0.16494845360824742], rel=1e-14)

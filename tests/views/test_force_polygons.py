@@ -9,7 +9,12 @@ import pytest
 import centrode as ct
 from centrode.dynamics.force_polygons.results import ForcePolygonResults, force_polygon_results
 from centrode.dynamics.force_polygons.statics import StaticJoint
-from centrode.dynamics.force_polygons.steps import MomentsOfGroup, MomentsOfLink, Outcome, Unknown
+from centrode.dynamics.force_polygons.steps import (
+    EquationOutcome,
+    MomentsOfGroup,
+    MomentsOfLink,
+    MomentUnknown,
+)
 from centrode.locale import speaking
 from centrode.model.examples import example_text
 from centrode.model.settings import Display
@@ -127,7 +132,7 @@ def test_a_chapter_has_every_step_and_its_drawings_to_scale() -> None:
 @pytest.mark.parametrize(("arm", "shown"), [(-0.25, "R12ᵗ·(-0.25)"), (0.25, "R12ᵗ·0.25")])
 def test_a_negative_arm_is_in_brackets(arm: float, shown: str) -> None:
     joint = StaticJoint("hinge", "B", {"AB": 1.0}, 0j, ())
-    step = MomentsOfLink(2, joint, Unknown("R12ᵗ", arm), (), Outcome("R12ᵗ", 3.0))
+    step = MomentsOfLink(2, joint, MomentUnknown("R12ᵗ", arm), (), EquationOutcome("R12ᵗ", 3.0))
     assert PlainSpelling(Display()).text(step_text(step)).startswith(f"moments of link 2 about B: {shown}")
     formula = next(one for one in step_equations(step, NOTHING) if isinstance(one, Formula))
     spelled = DocumentSpelling(Numbers(Display(), 5)).mathematics(formula.lines[0][-2])

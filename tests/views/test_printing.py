@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ from centrode.render.document.typst import quote
 from centrode.render.files import write_table
 from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.render.table_spelling import TableSpelling
+from centrode.render.table_files import TableSpelling
 from centrode.render.terminal import sheet_text, table_text
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.plots import Abscissa, AxisLabel

@@ -13,7 +13,7 @@ import xarray as xr
 import centrode as ct
 from centrode.assignments.results import VariantRow, Variants
 from centrode.render.files import write_table
-from centrode.render.table_spelling import TableSpelling
+from centrode.render.table_files import TableSpelling
 from centrode.sweeps import sweep
 
 CRANK_ROCKER = ct.example("crank-rocker")

@@ -14,7 +14,7 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.preparation import ready
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism

@@ -20,7 +20,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.search import interpolated_roots
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from centrode.locale import _
 from centrode.model.labels import body_name, sliders_of
 from centrode.model.reading import FRAME
 from centrode.render.drawing.globe import draw_line
-from centrode.render.drawing.style import LINK, marked, pens
+from centrode.render.drawing.style import LINK, marker_options, pens
 from centrode.render.drawing.texts import centre_symbol
 from centrode.render.drawing.window import carried_by, within
 from centrode.scenes.places import LinkageScene
@@ -63,11 +63,11 @@ class CentrodesLayer(MotionLayer):
         low, high = self.box
         far = FAR * float(np.max(high - low))
         looks = np.unique(np.linspace(0, self.count - 1, LOOKS).astype(int)).tolist()
-        places = np.concatenate([self.placed(side, look) for side in (0, 1) for look in looks])
+        places = np.concatenate([self.placed_curve(side, look) for side in (0, 1) for look in looks])
         with np.errstate(invalid="ignore"):
             return np.asarray(places[((places > low - far) & (places < high + far)).all(axis=1)])
 
-    def placed(self, side: int, sample: int) -> Array:
+    def placed_curve(self, side: int, sample: int) -> Array:
         """The fixed (0) or the moving curve (1) as it lies at a sample; NaN where its body has no position."""
         return self._curve_carried_by(self.bodies[side], self.curves[side], sample)
 
@@ -116,7 +116,7 @@ class CentrodesLayer(MotionLayer):
 
     def _draw_curve(self, axes: Axes, side: int, sample: int) -> None:
         """Piece by piece, so that nothing joins where the curve goes to infinity."""
-        curve, colour = self.placed(side, sample), (FIXED, MOVING)[side]
+        curve, colour = self.placed_curve(side, sample), (FIXED, MOVING)[side]
         for piece in np.unique(self.pieces[self.pieces >= 0]):
             own = curve[self.pieces == piece]
             if isinstance(self.scene, Globe):
@@ -206,7 +206,9 @@ class CentresLayer(MotionLayer):
         for number, name in enumerate(self.bodies):
             if name in shown:
                 line = (
-                    Line2D([], [], color=links[name].colour, linewidth=LINK, **marked(links[name], None))
+                    Line2D(
+                        [], [], color=links[name].colour, linewidth=LINK, **marker_options(links[name], None)
+                    )
                     if name in links
                     else Line2D([], [], linewidth=0.0)
                 )

@@ -227,7 +227,7 @@ class Film:
         return xr.concat(both, dim="sample", data_vars="minimal", join="override")
 
     @property
-    def passed(self) -> npt.NDArray[np.intp]:
+    def passed_samples(self) -> npt.NDArray[np.intp]:
         """How many samples of the course lie behind each sample of the frames."""
         along = self.course.places * np.sign(self.course.places[-1] - self.course.places[0])
         own = self.places * np.sign(self.course.places[-1] - self.course.places[0])

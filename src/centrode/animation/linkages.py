@@ -122,7 +122,7 @@ class PathsLayer(MotionLayer):
         super().__init__(film, scene)
         self.points = points
         self.growing = growing
-        self.passed = film.passed
+        self.passed = film.passed_samples
 
     def ground(self, axes: Axes) -> None:
         """Whole paths do not move."""

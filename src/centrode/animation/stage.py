@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from centrode.animation.layers import NOTHING, Layer, ScaleArrow
-from centrode.render.drawing.style import INK, darkened, house_style, recolour
+from centrode.render.drawing.style import INK, darken, house_style, recolour
 from centrode.render.drawing.texts import plain
 from centrode.scenes.places import View
 
@@ -273,7 +273,7 @@ class Stage:
         style: AbstractContextManager[None] = house_style()
         with style:
             figure, axes, paper = self._prepare_figure()
-            canvas: Any = FigureCanvasAgg(darkened(figure) if self.dark else figure)
+            canvas: Any = FigureCanvasAgg(darken(figure) if self.dark else figure)
             canvas.draw()
             ground = canvas.copy_from_bbox(figure.bbox)
             yield _pixels(canvas)

@@ -24,7 +24,7 @@ from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
 from centrode.app.scene import scene_of
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.app.synthesis_bench import synthesis_answers, synthesis_state
 from centrode.app.templates import template_list
 from centrode.app.words import spoken_words
@@ -182,7 +182,7 @@ class Workbench:
         if document.is_cam:
             scene, readiness = cam_scene(document), {"ready": document.cam is not None, **CAM_READINESS}
         else:
-            sketch = Sketch(document)
+            sketch = SketchParts(document)
             scene, readiness = scene_of(sketch), readiness_of(sketch)
         return {
             "text": document.text,
@@ -212,13 +212,13 @@ class Workbench:
         document, point, to = self.document(message), message.get("point"), _place_of(message.get("to"))
         if not isinstance(point, str):
             raise InputError("", _("the message names no point"))
-        if len(to) != (3 if Sketch(document).on_sphere else 2):
+        if len(to) != (3 if SketchParts(document).on_sphere else 2):
             raise InputError("", _("a place is two numbers, on the sphere three"))
         if message.get("mode") == "move" and has_free_place(document):
             return self._drives_answer(message, document, point, to)
         if message.get("mode") == "move":
             return self._move_answer(message, document, point, to)
-        sketch = Sketch(document)
+        sketch = SketchParts(document)
         if message.get("drop"):
             move = {"do": "move_point", "point": point, "to": list(to)}
             return self._patch_answer(apply_operations(document.text, self.work.folder, [move]))
@@ -243,7 +243,7 @@ class Workbench:
         self, message: Message, document: Document, point: str, to: tuple[float, ...]
     ) -> Answer:
         """Where a point of a mechanism with several drives, or without laws, is nearest to the cursor."""
-        sketch, prepared = Sketch(document), document.position
+        sketch, prepared = SketchParts(document), document.position
         assert prepared is not None
         if point not in prepared.mechanism.moving_points:
             raise InputError(point, _("this point does not move"))

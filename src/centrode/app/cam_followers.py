@@ -39,15 +39,15 @@ def follower_scene(cam: PlateCam, angles: npt.NDArray[np.float64]) -> dict[str, 
     faces = None
     if flat:
         lines = [np.ravel(drawing.lines(sample)) for sample in range(len(angles))]
-        faces = [_rounded(line) for line in lines]
+        faces = [_rounded_numbers(line) for line in lines]
     return {
         "sense": 1 if body.sense > 0.0 else -1,
         "contact": cam.follower.contact,
-        "places": None if places is None else [_rounded(place) for place in places],
+        "places": None if places is None else [_rounded_numbers(place) for place in places],
         "faces": faces,
-        "pivot": None if drawing.pivot is None else _rounded(drawing.pivot),
+        "pivot": None if drawing.pivot is None else _rounded_numbers(drawing.pivot),
     }
 
 
-def _rounded(numbers: npt.NDArray[np.float64]) -> list[float | None]:
+def _rounded_numbers(numbers: npt.NDArray[np.float64]) -> list[float | None]:
     return [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers]

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from centrode.app.documents import Document
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.app.text_places import text_places
 from centrode.model.reading import Place
 from centrode.model.schema import cam_schema, mechanism_schema
@@ -104,7 +104,7 @@ def _values(schema: Schema, document: Document, place: Place, written: str) -> I
     quoted = written.count('"') % 2 == 1
     key = str(place[-1])
     if key in NAMES:
-        sketch = Sketch(document)
+        sketch = SketchParts(document)
         names = {
             "points": sketch.points,
             "links": (*sketch.links, "frame"),

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from centrode.app.edit_drags import value_at_place
 from centrode.app.patches import Operation, Patch
 from centrode.app.references import key_places, references
-from centrode.app.sketch import Sketch, guide_name, list_of_tables, load_name, marked_names
+from centrode.app.sketch import SketchParts, guide_name, list_of_tables, load_name, marked_names
 from centrode.app.state_rows import remove_guides
 from centrode.errors import InputError
 from centrode.locale import _
@@ -40,7 +40,7 @@ def _delete_link(patch: Patch, link: str) -> None:
     _drop_unused(patch, points)
 
 
-def _references_to(patch: Patch, sketch: Sketch, name: str, kind: str) -> list[Place]:
+def _references_to(patch: Patch, sketch: SketchParts, name: str, kind: str) -> list[Place]:
     """What goes with an object: entries that name it, and the key of its side."""
     places: list[Place] = []
     for place in references(sketch.tables, name, kind):

@@ -7,18 +7,18 @@ from collections.abc import Iterator
 from typing import Any
 
 from centrode.app.quantity_texts import field_text
-from centrode.app.sketch import Sketch, display_units
+from centrode.app.sketch import SketchParts, display_units
 
 SIGNS = {False: ("x", "y"), True: ("λ", "β")}
 """Signs of coordinates in the plane, and of longitude and latitude on the sphere."""
 
 
-def dimension_rows(sketch: Sketch) -> list[dict[str, Any]]:
+def dimension_rows(sketch: SketchParts) -> list[dict[str, Any]]:
     """Each number with its path, its name, its value in the unit of the display, and whether it is locked."""
     return list(_rows(sketch))
 
 
-def _rows(sketch: Sketch) -> Iterator[dict[str, Any]]:
+def _rows(sketch: SketchParts) -> Iterator[dict[str, Any]]:
     units = display_units(sketch.tables)
     for owner, path, name, value, kind in _numbers(sketch):
         shown = value * units[kind]["factor"]
@@ -33,7 +33,7 @@ def _rows(sketch: Sketch) -> Iterator[dict[str, Any]]:
         }
 
 
-def _numbers(sketch: Sketch) -> Iterator[tuple[str, str, str, float, str]]:
+def _numbers(sketch: SketchParts) -> Iterator[tuple[str, str, str, float, str]]:
     for name in sketch.links:
         length = sketch.length(name)
         if length is not None:

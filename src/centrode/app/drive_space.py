@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.app.documents import Document
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.kinematics.higher_class.evaluation import sense_of
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.system import (
@@ -159,7 +159,9 @@ def _positions_on_the_way(prepared: Ready, values: Mapping[str, float]) -> Posit
     """Positions beside those at values of the drives: kept ones of a drag, or by steps from the initial position."""
     start = prepared.assembled.positions
     structure = prepared.structure
-    if not (any(isinstance(one, Newton) for one in structure.groups) or any(map(bool, structure.counted))):
+    if not (
+        any(isinstance(one, Newton) for one in structure.groups) or any(map(bool, structure.counted_links))
+    ):
         return start
     kept = _KEPT.get(_key_of(prepared, values))
     if kept is not None and kept[0] is prepared:
@@ -259,7 +261,7 @@ def _damped_step(matrix: Array, gradient: Array, damping: float) -> Array:
     return step
 
 
-def starts_of(sketch: Sketch, position: DrivenPosition) -> dict[str, float]:
+def starts_of(sketch: SketchParts, position: DrivenPosition) -> dict[str, float]:
     """Starts [rad or m] of the drives that put the mechanism there: their laws begin where they do now."""
     prepared = sketch.document.position
     assert prepared is not None

@@ -16,7 +16,7 @@ from centrode.app.edit_drags import (
 )
 from centrode.app.patches import Operation, Patch
 from centrode.app.quantity_texts import written_quantity
-from centrode.app.sketch import Sketch, drive_name, number
+from centrode.app.sketch import SketchParts, drive_name, number
 from centrode.errors import InputError
 from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
@@ -56,7 +56,7 @@ def set_starts(patch: Patch, operation: Operation) -> None:
     patch.write(*own.items(), *written_position(sketch, there, own.keys()))
 
 
-def _check_stands(there: Ready, position: DrivenPosition, sketch: Sketch) -> None:
+def _check_stands(there: Ready, position: DrivenPosition, sketch: SketchParts) -> None:
     """InputError where a description with these starts begins elsewhere: a rack stands where its line says."""
     at = there.assembled.positions.points
     if any(
@@ -68,7 +68,7 @@ def _check_stands(there: Ready, position: DrivenPosition, sketch: Sketch) -> Non
         )
 
 
-def _written_angles(sketch: Sketch, angles: Mapping[str, float]) -> Iterator[Assignment]:
+def _written_angles(sketch: SketchParts, angles: Mapping[str, float]) -> Iterator[Assignment]:
     """Angles of links on the sphere, which follow from no coordinates."""
     for path, angle in angles.items():
         place: Place = ("links", path.removeprefix("links.").removesuffix(".angle"), "angle")
@@ -78,7 +78,7 @@ def _written_angles(sketch: Sketch, angles: Mapping[str, float]) -> Iterator[Ass
             yield place, written_quantity(sketch, old, near, "angle")
 
 
-def _written_starts(sketch: Sketch, starts: Mapping[str, float]) -> Iterator[Assignment]:
+def _written_starts(sketch: SketchParts, starts: Mapping[str, float]) -> Iterator[Assignment]:
     """Starts that the text states, or that follow from nothing else in it."""
     for k, drive in enumerate(sketch.drives):
         name, link = drive_name(drive), drive.get("link")

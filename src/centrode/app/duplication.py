@@ -9,7 +9,7 @@ from typing import Any
 
 from centrode.app.edit_drags import reshaped_by
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import Sketch, Vector, on_unit_sphere
+from centrode.app.sketch import SketchParts, Vector, on_unit_sphere
 from centrode.app.state_rows import set_ground
 from centrode.errors import InputError
 from centrode.locale import _
@@ -94,7 +94,7 @@ def reflect_in_plane(place: Vector, normal: Vector) -> Vector:
     return tuple(x - 2.0 * off * y for x, y in zip(place, normal, strict=True))
 
 
-def _copy_link(patch: Patch, sketch: Sketch, link: str, new: Mapping[str, str]) -> None:
+def _copy_link(patch: Patch, sketch: SketchParts, link: str, new: Mapping[str, str]) -> None:
     first, *rest = (new[point] for point in sketch.links[link])
     name = patch.link_name(first, rest[0]) if len(rest) == 1 else patch.numbered_name()
     table = dict(sketch.tables["links"][link])
@@ -129,7 +129,7 @@ def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str
             patch.write((("links", name, "angle"), patch.angle(sketch.poses[link][1])))
 
 
-def _parts(sketch: Sketch, links: Sequence[str], points: Sequence[str]) -> list[list[str]]:
+def _parts(sketch: SketchParts, links: Sequence[str], points: Sequence[str]) -> list[list[str]]:
     """Points that links join with each other, part by part."""
     parts: list[list[str]] = [[point] for point in points]
     for link in links:

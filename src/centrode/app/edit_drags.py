@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 from centrode.app.quantity_texts import written_quantity
 from centrode.app.sketch import (
     Pose,
-    Sketch,
+    SketchParts,
     Vector,
     guide_circle,
     guide_line,
@@ -69,7 +69,7 @@ class ReshapedDescription:
 
 
 def reshape(
-    sketch: Sketch, point: str, to: Vector, folder: Path, *, exactly: bool = False
+    sketch: SketchParts, point: str, to: Vector, folder: Path, *, exactly: bool = False
 ) -> ReshapedDescription:
     """The description with a joint at another place, or as near to it as locks and guides let it come.
 
@@ -91,7 +91,7 @@ def reshape(
 
 
 def reshaped_by(
-    sketch: Sketch, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
+    sketch: SketchParts, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
 ) -> ReshapedDescription:
     """The description with some points at other places, everything else standing.
 
@@ -119,7 +119,7 @@ def reshaped_by(
 
 
 def _assemble(
-    sketch: Sketch,
+    sketch: SketchParts,
     assignments: tuple[Assignment, ...],
     tables: Mapping[str, Any],
     moved: Mapping[str, Vector],
@@ -145,7 +145,7 @@ def _assemble(
     raise InputError(next(iter(moved)), what, _("drag it another way"))
 
 
-def _stands(sketch: Sketch, prepared: Ready, point: str, place: Vector) -> bool:
+def _stands(sketch: SketchParts, prepared: Ready, point: str, place: Vector) -> bool:
     at = prepared.assembled.positions.points[point]
     return math.dist(tuple(map(float, at)), place) <= STANDS * sketch.size
 
@@ -170,7 +170,9 @@ def with_assignments(tables: Mapping[str, Any], assignments: tuple[Assignment, .
     return changed
 
 
-def _values(sketch: Sketch, places: Mapping[str, Vector], moved: Mapping[str, Vector]) -> dict[str, float]:
+def _values(
+    sketch: SketchParts, places: Mapping[str, Vector], moved: Mapping[str, Vector]
+) -> dict[str, float]:
     """Lengths and coordinates that change, by their paths."""
     values: dict[str, float] = {}
     for name, points in sketch.links.items():
@@ -190,7 +192,7 @@ FOLLOWED = (1, 4, 16, 64)
 """Steps in which a number is changed, until the initial position follows."""
 
 
-def follow(sketch: Sketch, path: str, number: float) -> Ready:
+def follow(sketch: SketchParts, path: str, number: float) -> Ready:
     """The mechanism with another number at a path [SI], in the initial position that goes on from the present one.
 
     Raises InputError where it cannot be assembled on the way, or where the number does not fit.
@@ -226,7 +228,7 @@ def _mechanism_with(prepared: Ready, path: str, value: float) -> Mechanism:
     return with_values(mechanism, values)
 
 
-def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -> Iterator[Assignment]:
+def written_position(sketch: SketchParts, prepared: Ready, left: Collection[Place]) -> Iterator[Assignment]:
     """What the text says of the initial position, as it is in another one: coordinates of points, angles of links."""
     at = prepared.assembled.positions.points
     for point, place in sketch.places.items():
@@ -272,7 +274,7 @@ def written_position(sketch: Sketch, prepared: Ready, left: Collection[Place]) -
 # Where the joint may stand: guides and locked lengths hold.
 
 
-def edit_refusal(sketch: Sketch, name: str) -> str:
+def edit_refusal(sketch: SketchParts, name: str) -> str:
     """Why a point cannot be dragged to change lengths; empty where it can."""
     if name in sketch.marks["fixed"]:
         return _("this joint is held: switch Fixed off to drag it")
@@ -285,7 +287,7 @@ def edit_refusal(sketch: Sketch, name: str) -> str:
     return ""
 
 
-def allowed_place(sketch: Sketch, point: str, to: tuple[float, float]) -> tuple[Vector, str]:
+def allowed_place(sketch: SketchParts, point: str, to: tuple[float, float]) -> tuple[Vector, str]:
     """The place nearest to a wish at which guides and locked lengths hold, and why it is not the wish itself."""
     lines = [
         (through, direction)
@@ -313,7 +315,7 @@ def allowed_place(sketch: Sketch, point: str, to: tuple[float, float]) -> tuple[
     return to, ""
 
 
-def allowed_on_sphere(sketch: Sketch, point: str, to: Vector) -> tuple[Vector, str]:
+def allowed_on_sphere(sketch: SketchParts, point: str, to: Vector) -> tuple[Vector, str]:
     """The same on the sphere: a guide is a circle about its pole, a locked length one about the link's other point."""
     circles: list[tuple[Vector, float]] = []
     for k in sketch.guides_of(point):
@@ -384,7 +386,7 @@ def _nearest_of(places: list[Vector], to: Vector, present: Vector) -> tuple[Vect
     return (min(places, key=lambda place: math.dist(place, to)) if places else present), held
 
 
-def moved_with(sketch: Sketch, point: str, place: Vector) -> dict[str, Vector]:
+def moved_with(sketch: SketchParts, point: str, place: Vector) -> dict[str, Vector]:
     """The joint at its new place, and points on the line of two joints of a link, which keep their ratio on it."""
     moved = {point: place}
     if sketch.on_sphere:
@@ -421,7 +423,7 @@ def moved_with(sketch: Sketch, point: str, place: Vector) -> dict[str, Vector]:
 
 
 def reshaping_assignments(
-    sketch: Sketch, moved: Mapping[str, Vector], *, exactly: bool = False
+    sketch: SketchParts, moved: Mapping[str, Vector], *, exactly: bool = False
 ) -> Iterator[Assignment]:
     """Keys of the description with the values that put points at other places, everything else standing."""
     places = {**sketch.places, **moved}
@@ -478,7 +480,7 @@ def reshaping_assignments(
 
 
 def written_place(
-    sketch: Sketch, place: Place, value: Vector, *, exactly: bool = False
+    sketch: SketchParts, place: Place, value: Vector, *, exactly: bool = False
 ) -> Iterator[Assignment]:
     """Coordinates at a place of the text as the file writes them: on the sphere longitude and latitude."""
     old = value_at_place(sketch.tables, place)
@@ -492,7 +494,7 @@ def written_place(
 
 
 def _starts(
-    sketch: Sketch,
+    sketch: SketchParts,
     places: Mapping[str, Vector],
     turned: Mapping[str, float],
     moved: Mapping[str, Vector],
@@ -538,7 +540,7 @@ def _starts(
                     yield assignment(place, x * math.cos(direction) + y * math.sin(direction), "length")
 
 
-def follows_from_points(sketch: Sketch, name: str) -> bool:
+def follows_from_points(sketch: SketchParts, name: str) -> bool:
     """Whether the length and the angle of a link follow from coordinates of its points."""
     link = sketch.tables["links"][name]
     named = not isinstance(link.get("points"), Mapping) and link.get("length") is None
@@ -566,7 +568,7 @@ def pose_between(places: Mapping[str, Vector], points: tuple[str, ...]) -> Pose 
     return (x, y), math.atan2(v - y, u - x)
 
 
-def new_pose(sketch: Sketch, name: str, moved: Mapping[str, Vector]) -> Pose | None:
+def new_pose(sketch: SketchParts, name: str, moved: Mapping[str, Vector]) -> Pose | None:
     """Axes of a link with own coordinates after a drag: they go on lying along the two points along which they lay."""
     if name not in sketch.poses:
         return None

@@ -19,7 +19,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import initial_place, motion, motion_among
 from centrode.locale import _, chosen_language, mark
 from centrode.model.mechanism import Mechanism
-from centrode.render.table_spelling import TableSpelling
+from centrode.render.table_files import TableSpelling
 from centrode.topics.topic import Lazily
 
 REPORT = Lazily("centrode.report.document", "report")

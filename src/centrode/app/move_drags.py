@@ -13,7 +13,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.app.documents import Document
-from centrode.app.sketch import Sketch, Vector
+from centrode.app.sketch import SketchParts, Vector
 from centrode.errors import CentrodeError, InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.path import even_grid
@@ -38,7 +38,7 @@ NEWTON_STEPS = 6
 
 
 @dataclass(frozen=True)
-class Way:
+class DragWay:
     """The way of a mechanism by its parameter: one that a drag follows.
 
     Attributes
@@ -89,13 +89,13 @@ class _ById:
         return id(self.prepared)
 
 
-def way_of(document: Document) -> Way:
+def way_of(document: Document) -> DragWay:
     """The way of a mechanism; InputError where it does not move."""
     return _kept_way(_ById(document.require_prepared()))
 
 
 @lru_cache(maxsize=8)
-def _kept_way(key: _ById) -> Way:
+def _kept_way(key: _ById) -> DragWay:
     prepared = key.prepared
     path = prepared.kinematics.path
     if path.parameter.is_uniform:
@@ -119,10 +119,12 @@ def _kept_way(key: _ById) -> Way:
     moving = samples.columns[:, : layout.first_attitude, 0].reshape(3, -1, layout.axes, TABLE)
     points, slopes, bends = np.moveaxis(moving, 3, 1)
     reached = np.isfinite(points).all(axis=(1, 2)) & (samples.status[0] != Status.CUT_OFF)
-    return Way(fitted, on_path, grid.parameter, points, slopes, bends, reached, closes, tuple(layout.points))
+    return DragWay(
+        fitted, on_path, grid.parameter, points, slopes, bends, reached, closes, tuple(layout.points)
+    )
 
 
-def move_refusal(sketch: Sketch, name: str) -> str:
+def move_refusal(sketch: SketchParts, name: str) -> str:
     """Why a point cannot be dragged to move the mechanism; empty where it can."""
     if name in sketch.frame_points:
         return _("a point of the frame does not move")
@@ -131,7 +133,7 @@ def move_refusal(sketch: Sketch, name: str) -> str:
     return ""
 
 
-def place_on_way(way: Way, point: str, to: Array, present: float | None) -> float:
+def place_on_way(way: DragWay, point: str, to: Array, present: float | None) -> float:
     """The parameter that brings a point nearest to a place, sought along the way from the present one."""
     if point not in way.names:
         raise InputError(point, _("this point does not move"))
@@ -171,7 +173,7 @@ def _nearest_node(away: Array, node: int, reach: int, closes: bool) -> int:
         node = best
 
 
-def _same_turn(way: Way, best: int, node: int, turns: float) -> float:
+def _same_turn(way: DragWay, best: int, node: int, turns: float) -> float:
     """What to add to the place of a node of the table so that it lies beside the present place."""
     if not way.closes:
         return 0.0
@@ -184,7 +186,7 @@ def _same_turn(way: Way, best: int, node: int, turns: float) -> float:
     return turns
 
 
-def _refine_parameter(way: Way, point: str, to: Array, node: int) -> float:
+def _refine_parameter(way: DragWay, point: str, to: Array, node: int) -> float:
     """The parameter of the least distance beside a node, by the Taylor polynomial of second degree about it."""
     k = way.names.index(point)
     step = float(np.abs(way.places[1] - way.places[0])) if len(way.places) > 1 else 0.0

@@ -15,7 +15,7 @@ from centrode.app.edit_drags import (
 )
 from centrode.app.patches import Operation, Patch
 from centrode.app.quantity_texts import read_field, typed_quantity, with_decimal_point
-from centrode.app.sketch import Sketch, Vector, drive_name
+from centrode.app.sketch import SketchParts, Vector, drive_name
 from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
 from centrode.locale import _
@@ -63,7 +63,7 @@ def set_number(patch: Patch, operation: Operation) -> None:
     patch.write((place, typed_quantity(sketch, old, value, number, kind)))
 
 
-def _stretch(patch: Patch, sketch: Sketch, link: str, length: float) -> None:
+def _stretch(patch: Patch, sketch: SketchParts, link: str, length: float) -> None:
     """Another length of a link that cannot move yet: its second point goes, or its first where that one is free."""
     first, second = sketch.links[link][:2]
     if second in sketch.frame_points or (
@@ -79,7 +79,7 @@ def _stretch(patch: Patch, sketch: Sketch, link: str, length: float) -> None:
 
 
 def _follow(
-    patch: Patch, sketch: Sketch, path: str, place: Place, number: float, value: Any, kind: str
+    patch: Patch, sketch: SketchParts, path: str, place: Place, number: float, value: Any, kind: str
 ) -> None:
     """Another number of a mechanism that moves: its initial position follows on the same side."""
     old = value_at_place(sketch.tables, place)
@@ -125,7 +125,7 @@ def lock(patch: Patch, operation: Operation) -> None:
 # The key that a path names.
 
 
-def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
+def place_of_path(sketch: SketchParts, path: str) -> tuple[Place, str | None]:
     """Place of a path such as links.OA.length, and the kind of quantity there; None where only its spelling is known.
 
     Raises InputError for a path that leads nowhere.
@@ -164,7 +164,7 @@ def place_of_path(sketch: Sketch, path: str) -> tuple[Place, str | None]:
     return _literal(sketch, path), None
 
 
-def _place_in_link(sketch: Sketch, rest: str) -> tuple[Place, str | None] | None:
+def _place_in_link(sketch: SketchParts, rest: str) -> tuple[Place, str | None] | None:
     for name in sorted(sketch.links, key=len, reverse=True):
         if not rest.startswith(f"{name}."):
             continue
@@ -178,7 +178,7 @@ def _place_in_link(sketch: Sketch, rest: str) -> tuple[Place, str | None] | None
     return None
 
 
-def _literal(sketch: Sketch, path: str) -> Place:
+def _literal(sketch: SketchParts, path: str) -> Place:
     place: list[Any] = []
     value: Any = sketch.tables
     for word in path.split("."):

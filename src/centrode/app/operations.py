@@ -13,7 +13,7 @@ from centrode.app.duplication import duplicate, mirror
 from centrode.app.name_changes import join_points, rename
 from centrode.app.number_fields import lock, move_point, set_number
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.app.state_rows import ensure_references, set_row
 from centrode.errors import InputError
 from centrode.locale import _
@@ -65,7 +65,7 @@ def apply_operation(patch: Patch, operation: Operation) -> None:
         change(patch, operation)
         ensure_references(patch)
         if before.prepared is not None and patch.document.prepared is None:
-            patch.keep_places(Sketch(before))
+            patch.keep_places(SketchParts(before))
         after = patch.document
         broken = before.mechanism is not None and after.mechanism is None and after.tables.get("links")
         if broken and name in NEEDS_MECHANISM:

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from centrode.app.documents import Document, read_document
 from centrode.app.edit_drags import Assignment, value_at_place
 from centrode.app.quantity_texts import written_quantity
-from centrode.app.sketch import Sketch, Vector, on_unit_sphere, with_mark
+from centrode.app.sketch import SketchParts, Vector, on_unit_sphere, with_mark
 from centrode.app.text_changes import TextChanges
 from centrode.errors import InputError
 from centrode.locale import _
@@ -46,11 +46,11 @@ class Patch:
         return read_document(self.text, self.folder)
 
     @property
-    def sketch(self) -> Sketch:
+    def sketch(self) -> SketchParts:
         """What is drawn of it."""
-        return Sketch(self.document)
+        return SketchParts(self.document)
 
-    def keep_places(self, before: Sketch) -> None:
+    def keep_places(self, before: SketchParts) -> None:
         """Write the angles of links that no position gives any more, so that they stay where they were drawn."""
         while True:
             sketch = self.sketch
@@ -99,7 +99,7 @@ class Patch:
         self.text = changes.text
         self.changed.append(f"{room}.{len(changes.tables[room]) - 1}")
 
-    def drawn_sketch(self) -> Sketch:
+    def drawn_sketch(self) -> SketchParts:
         """What is drawn; InputError on the sphere where links have arcs in place of points with coordinates."""
         sketch = self.sketch
         if sketch.on_sphere and not sketch.draws_points:

@@ -6,7 +6,7 @@ import math
 import re
 from typing import Any
 
-from centrode.app.sketch import Sketch, display_units
+from centrode.app.sketch import SketchParts, display_units
 from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
 from centrode.locale import _, decimal_mark
@@ -23,7 +23,7 @@ _UNIT = re.compile(r"(?:[^\W\d_]|[°%]).*\Z", re.DOTALL)
 _NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
-def written_quantity(sketch: Sketch, old: Any, value: float, kind: str, *, exactly: bool = False) -> Any:
+def written_quantity(sketch: SketchParts, old: Any, value: float, kind: str, *, exactly: bool = False) -> Any:
     """A number or a text for a quantity in SI, spelled as the old value is, or as the description's other ones are."""
     if not math.isfinite(value):
         raise InputError("", _("the number is too great"), _("give another place"))
@@ -62,7 +62,7 @@ def _unit_of(text: str) -> str | None:
     return named.group().strip() if named else None
 
 
-def _usual_unit(sketch: Sketch, kind: str) -> str | None:
+def _usual_unit(sketch: SketchParts, kind: str) -> str | None:
     units = display_units(sketch.tables)
     if kind == "angle":
         unit = str(units["angle"]["unit"])
@@ -71,18 +71,18 @@ def _usual_unit(sketch: Sketch, kind: str) -> str | None:
     return length if kind == "length" and length != "m" else None
 
 
-def _displays_other_angles(sketch: Sketch) -> bool:
+def _displays_other_angles(sketch: SketchParts) -> bool:
     return bool(display_units(sketch.tables)["angle"]["unit"] != "rad")
 
 
-def _decimals(sketch: Sketch, kind: str, unit: str, factor: float) -> int:
+def _decimals(sketch: SketchParts, kind: str, unit: str, factor: float) -> int:
     if kind == "angle":
         return ANGLE_DECIMALS.get(unit, 6)
     size = sketch.size / factor
     return max(0, min(12, DIGITS - math.floor(math.log10(size)))) if size > 0 else DIGITS
 
 
-def read_field(sketch: Sketch, text: object, kind: str) -> float:
+def read_field(sketch: SketchParts, text: object, kind: str) -> float:
     """The number [SI] that somebody writes into a field; without a unit it is in that of the display."""
     if isinstance(text, int | float) and not isinstance(text, bool):
         return to_si(text, kind)
@@ -106,7 +106,7 @@ def is_number(text: str) -> bool:
     return _NUMBER.fullmatch(text.strip()) is not None
 
 
-def typed_quantity(sketch: Sketch, old: Any, typed: object, value: float, kind: str) -> Any:
+def typed_quantity(sketch: SketchParts, old: Any, typed: object, value: float, kind: str) -> Any:
     """What somebody has typed into a field as a file holds it: with the unit that was typed, or that of the display.
 
     `value` is what it means [SI].

@@ -6,7 +6,7 @@ from typing import Any
 
 from centrode import render
 from centrode.app.move_drags import way_of
-from centrode.app.sketch import Sketch
+from centrode.app.sketch import SketchParts
 from centrode.errors import CentrodeError
 from centrode.kinematics.check import check_of
 from centrode.locale import _
@@ -16,7 +16,7 @@ from centrode.structure.dimensions import dimensions_of
 from centrode.views import structure
 
 
-def readiness_of(sketch: Sketch) -> dict[str, Any]:
+def readiness_of(sketch: SketchParts) -> dict[str, Any]:
     """Mobility, facts, loose points, and what is missing, in sentences."""
     document = sketch.document
     answer: dict[str, Any] = {
@@ -50,7 +50,7 @@ def readiness_of(sketch: Sketch) -> dict[str, Any]:
     return answer
 
 
-def _missing_parts(sketch: Sketch) -> list[str]:
+def _missing_parts(sketch: SketchParts) -> list[str]:
     sentences = []
     if not sketch.frame_points and not sketch.guides:
         sentences.append(_("no point belongs to the frame: switch Ground on at one"))
@@ -77,7 +77,7 @@ def _missing_parts(sketch: Sketch) -> list[str]:
     return sentences
 
 
-def _mobility(sketch: Sketch) -> int | None:
+def _mobility(sketch: SketchParts) -> int | None:
     """Chebyshev's count of a description in the plane that is right in itself; None where it is not."""
     mechanism = sketch.document.mechanism
     if mechanism is None:
@@ -91,7 +91,7 @@ def _mobility(sketch: Sketch) -> int | None:
     return width - sum(one.size for one in constraints)
 
 
-def _limit(sketch: Sketch) -> str | None:
+def _limit(sketch: SketchParts) -> str | None:
     """Where the motion ends, in a sentence; None where a drive at constant speed makes full turns."""
     prepared = sketch.document.prepared
     if prepared is None or not prepared.kinematics.path.parameter.is_uniform:

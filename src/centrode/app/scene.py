@@ -10,7 +10,7 @@ from centrode.app.dimensions import dimension_rows
 from centrode.app.edit_drags import edit_refusal
 from centrode.app.move_drags import move_refusal
 from centrode.app.sketch import (
-    Sketch,
+    SketchParts,
     coordinates,
     direction_angle,
     display_units,
@@ -36,7 +36,7 @@ MARGIN = 0.1
 """Room around a drawing, as a part of its extent."""
 
 
-def scene_of(sketch: Sketch) -> dict[str, Any]:
+def scene_of(sketch: SketchParts) -> dict[str, Any]:
     """The scene of a mechanism, whether it can move or not."""
     return {
         "title": _text(sketch.tables.get("title")),
@@ -60,7 +60,7 @@ def _text(value: object) -> str:
     return _(value) if isinstance(value, str) else ""
 
 
-def _box(sketch: Sketch) -> list[list[float]]:
+def _box(sketch: SketchParts) -> list[list[float]]:
     """Two corners of the room that the drawing needs [m]."""
     at = list(sketch.places.values())
     if not at:
@@ -70,7 +70,7 @@ def _box(sketch: Sketch) -> list[list[float]]:
     return [[x - margin for x in low], [x + margin for x in high]]
 
 
-def _point(sketch: Sketch, name: str) -> dict[str, Any]:
+def _point(sketch: SketchParts, name: str) -> dict[str, Any]:
     owners = sketch.owners(name)
     fixed = name in sketch.frame_points
     joint = len(owners) > 1 or bool(sketch.guides_of(name))
@@ -87,7 +87,7 @@ def _point(sketch: Sketch, name: str) -> dict[str, Any]:
     }
 
 
-def _link(sketch: Sketch, index: int, name: str) -> dict[str, Any]:
+def _link(sketch: SketchParts, index: int, name: str) -> dict[str, Any]:
     points, path = sketch.links[name], f"links.{name}.length"
     length = sketch.length(name)
     kinds = {1: "slider", 2: "bar"}
@@ -105,7 +105,7 @@ def _link(sketch: Sketch, index: int, name: str) -> dict[str, Any]:
     }
 
 
-def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
+def _guides(sketch: SketchParts) -> Iterator[dict[str, Any]]:
     for k, guide in enumerate(sketch.guides):
         through, direction = guide_line(sketch, k)
         point = guide.get("point")
@@ -122,13 +122,13 @@ def _guides(sketch: Sketch) -> Iterator[dict[str, Any]]:
         }
 
 
-def _circle(sketch: Sketch, number_of_guide: int) -> dict[str, Any] | None:
+def _circle(sketch: SketchParts, number_of_guide: int) -> dict[str, Any] | None:
     """The circle of a guide on the sphere."""
     circle = guide_circle(sketch, number_of_guide) if sketch.on_sphere else None
     return None if circle is None else {"pole": list(circle[0]), "radius": circle[1]}
 
 
-def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
+def _drives(sketch: SketchParts) -> Iterator[dict[str, Any]]:
     prepared = sketch.document.position
     for drive in sketch.drives:
         name, points = drive_name(drive), drive.get("distance")
@@ -149,7 +149,7 @@ def _drives(sketch: Sketch) -> Iterator[dict[str, Any]]:
         }
 
 
-def _wheels(sketch: Sketch) -> Iterator[dict[str, Any]]:
+def _wheels(sketch: SketchParts) -> Iterator[dict[str, Any]]:
     """Rolling wheels with what they roll on, and pitch circles of meshing ones, which touch where they mesh."""
     for wheel in list_of_tables(sketch.tables, "rolling"):
         along = wheel.get("along")
@@ -165,7 +165,7 @@ def _wheels(sketch: Sketch) -> Iterator[dict[str, Any]]:
         yield from _pitch_circles(sketch, gear)
 
 
-def _track(sketch: Sketch, wheel: Mapping[str, Any], along: Mapping[str, Any]) -> dict[str, Any] | None:
+def _track(sketch: SketchParts, wheel: Mapping[str, Any], along: Mapping[str, Any]) -> dict[str, Any] | None:
     """The circle or the line that a wheel rolls on, where it lies in the initial position."""
     on = str(wheel.get("on", FRAME))
     pose = ((0.0, 0.0), 0.0) if on == FRAME else sketch.poses.get(on)
@@ -187,7 +187,7 @@ def _track(sketch: Sketch, wheel: Mapping[str, Any], along: Mapping[str, Any]) -
     }
 
 
-def _pitch_circles(sketch: Sketch, gear: Gear) -> Iterator[dict[str, Any]]:
+def _pitch_circles(sketch: SketchParts, gear: Gear) -> Iterator[dict[str, Any]]:
     """Each wheel of a gear by the point in which it turns on the carrier; none where both turn about one axis."""
     held = sketch.frame_points if gear.carrier == FRAME else sketch.links.get(gear.carrier, ())
     of_links = [sketch.frame_points if link == FRAME else sketch.links.get(link, ()) for link in gear.links]
@@ -214,7 +214,7 @@ def _pitch_circles(sketch: Sketch, gear: Gear) -> Iterator[dict[str, Any]]:
         yield {"link": link, "centre": shaft, "radius": radius, "pitch": True, "track": None}
 
 
-def _loads(sketch: Sketch) -> Iterator[dict[str, Any]]:
+def _loads(sketch: SketchParts) -> Iterator[dict[str, Any]]:
     for k, load in enumerate(list_of_tables(sketch.tables, "loads")):
         vector = load.get("vector")
         yield {

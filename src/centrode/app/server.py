@@ -130,7 +130,7 @@ class ServerSettings:
 
 
 @dataclass
-class Lanes:
+class RequestLanes:
     """What computes: one for what a page waits for at once, one for what takes longer."""
 
     quick: Runner
@@ -151,7 +151,7 @@ def server_application(
     ----------
     make : makes what computes; tests compute in their own process
     """
-    lanes = Lanes(make(settings.work), make(settings.work))
+    lanes = RequestLanes(make(settings.work), make(settings.work))
 
     @contextlib.asynccontextmanager
     async def lifespan(_application: Starlette) -> AsyncIterator[None]:
@@ -166,15 +166,15 @@ def server_application(
             lanes.end()
 
     async def index(request: Request) -> Response:
-        return await opened(request, "index.html")
+        return await open_page(request, "index.html")
 
     async def gears(request: Request) -> Response:
-        return await opened(request, "gears.html")
+        return await open_page(request, "gears.html")
 
     async def synthesis(request: Request) -> Response:
-        return await opened(request, "synthesis.html")
+        return await open_page(request, "synthesis.html")
 
-    async def opened(request: Request, name: str) -> Response:
+    async def open_page(request: Request, name: str) -> Response:
         said = "\n".join(_spoken_error(REFUSED, _preferred_language(request)).values())
         token, code = (request.query_params.get(key) for key in ("token", "code"))
         if not _is_own_request(settings, request):
@@ -326,7 +326,7 @@ async def _file(runner: Runner, message: Mapping[str, Any]) -> Response:
 class Conversation:
     """The messages of one page: answered in turn, of drags that wait only the last one."""
 
-    def __init__(self, socket: WebSocket, lanes: Lanes) -> None:
+    def __init__(self, socket: WebSocket, lanes: RequestLanes) -> None:
         self.socket, self.lanes = socket, lanes
         self.waiting: dict[bool, deque[dict[str, Any]]] = {False: deque(), True: deque()}
         self.arrived = {False: asyncio.Event(), True: asyncio.Event()}

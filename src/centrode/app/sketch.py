@@ -27,7 +27,7 @@ _MARK = re.compile(r"^[ \t]*#[ \t]*workbench:[ \t]*(\w+)[ \t]+(.*?)[ \t]*$", re.
 
 
 @dataclass(frozen=True)
-class Sketch:
+class SketchParts:
     """The parts of a description by their names, read without complaint: what cannot be read is left out."""
 
     document: Document
@@ -269,12 +269,12 @@ class Sketch:
         return max(spans, default=0.0) or 1.0
 
 
-def guide_name(sketch: Sketch, number_of_guide: int) -> str:
+def guide_name(sketch: SketchParts, number_of_guide: int) -> str:
     """How the workbench names a guide: not as its point, which is an object of its own."""
     return f"guide {number_of_guide + 1}"
 
 
-def guide_line(sketch: Sketch, number_of_guide: int) -> tuple[Vector | None, float | None]:
+def guide_line(sketch: SketchParts, number_of_guide: int) -> tuple[Vector | None, float | None]:
     """A place on the line of a guide [m] and its angle [rad], both in the axes of the frame."""
     guide = sketch.guides[number_of_guide]
     on, point = guide.get("on", FRAME), str(guide.get("point"))
@@ -297,7 +297,7 @@ def guide_line(sketch: Sketch, number_of_guide: int) -> tuple[Vector | None, flo
     return (origin[0] + x, origin[1] + y), turned
 
 
-def guide_circle(sketch: Sketch, number_of_guide: int) -> tuple[Vector, float] | None:
+def guide_circle(sketch: SketchParts, number_of_guide: int) -> tuple[Vector, float] | None:
     """Pole and radius [rad] of a guide of the frame on the sphere; None where they are not known."""
     guide = sketch.guides[number_of_guide]
     pole = guide.get("pole")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
-from centrode.app.sketch import Sketch, Vector, entries_of, number, unit_vector_of
+from centrode.app.sketch import SketchParts, Vector, entries_of, number, unit_vector_of
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import FRAME, Place
@@ -26,7 +26,7 @@ UNCHANGED = 1e-12
 
 
 def sphere_assignments(
-    sketch: Sketch,
+    sketch: SketchParts,
     moved: Mapping[str, Vector],
     assignment: Callable[[Place, float, str], Assignment],
     pair: Callable[[Place, Vector], Iterator[Assignment]],
@@ -63,7 +63,7 @@ def _vector(place: Vector) -> Vector3:
 
 
 def _own_places(
-    sketch: Sketch, name: str, places: Mapping[str, Vector3], pair: Callable[..., Iterator[Assignment]]
+    sketch: SketchParts, name: str, places: Mapping[str, Vector3], pair: Callable[..., Iterator[Assignment]]
 ) -> Iterator[Assignment]:
     """Coordinates in the axes of a link: its first point stays there, the second in its direction."""
     table = sketch.tables["links"][name]["points"]
@@ -79,7 +79,7 @@ def _own_places(
             yield from pair(("links", name, "points", point), own)
 
 
-def _angle(sketch: Sketch, name: str, places: Mapping[str, Vector3]) -> float | None:
+def _angle(sketch: SketchParts, name: str, places: Mapping[str, Vector3]) -> float | None:
     """Angle [rad] of a link at its first point from its reference; None where it has none or a place is not known."""
     reference, points = entries_of(sketch.tables["links"][name].get("reference")), sketch.links[name]
     if len(reference) != 2 or len(points) < 2 or not {*reference, *points[:2]} <= places.keys():
@@ -91,7 +91,7 @@ def _angle(sketch: Sketch, name: str, places: Mapping[str, Vector3]) -> float | 
 
 
 def _start(
-    sketch: Sketch, name: str, angle: float, assignment: Callable[[Place, float, str], Assignment]
+    sketch: SketchParts, name: str, angle: float, assignment: Callable[[Place, float, str], Assignment]
 ) -> Iterator[Assignment]:
     """The value at which the drive of a link starts, where the text states it or nothing else does."""
     link = sketch.tables["links"][name]

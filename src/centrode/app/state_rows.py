@@ -10,7 +10,7 @@ from centrode.app.drawing_operations import guide_point, written_direction
 from centrode.app.edit_drags import Assignment, follows_from_points, value_at_place
 from centrode.app.patches import Operation, Patch
 from centrode.app.quantity_texts import is_number, read_field, written_quantity
-from centrode.app.sketch import Sketch, guide_line, guide_name, list_of_tables, number
+from centrode.app.sketch import SketchParts, guide_line, guide_name, list_of_tables, number
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
@@ -24,7 +24,7 @@ FORCE = 100.0
 """Size of a load [N] that a row adds."""
 
 
-def rows_of(sketch: Sketch) -> dict[str, dict[str, dict[str, Any]]]:
+def rows_of(sketch: SketchParts) -> dict[str, dict[str, dict[str, Any]]]:
     """State rows of every object: whether each is on, whether it may be switched, and why not."""
     rows = {name: _rows_of_point(sketch, name) for name in sketch.points}
     rows |= {name: _rows_of_link(sketch, name) for name in sketch.links if name not in rows}
@@ -36,12 +36,12 @@ def _row(on: bool, why: str = "", **more: Any) -> dict[str, Any]:
     return {"on": on, "allowed": not why, "why": why, **more}
 
 
-def _sphere_words(sketch: Sketch) -> str:
+def _sphere_words(sketch: SketchParts) -> str:
     measured = sketch.on_sphere and not sketch.is_short_form
     return _("on the sphere this is changed in the text") if measured else ""
 
 
-def _rows_of_point(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
+def _rows_of_point(sketch: SketchParts, name: str) -> dict[str, dict[str, Any]]:
     sphere = _sphere_words(sketch)
     fixed, guided = name in sketch.frame_points, bool(sketch.guides_of(name))
     unplaced = "" if name in sketch.places else _("its place is not known: correct the description first")
@@ -81,12 +81,12 @@ def number_list(value: object, kind: str) -> list[float | None] | None:
     return [number(one, kind) for one in value] if isinstance(value, list) else None
 
 
-def _guide_id(sketch: Sketch, k: int) -> str:
+def _guide_id(sketch: SketchParts, k: int) -> str:
     guide = sketch.guides[k]
     return str(guide.get("name", guide.get("point")))
 
 
-def _rows_of_link(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
+def _rows_of_link(sketch: SketchParts, name: str) -> dict[str, dict[str, Any]]:
     sphere = _sphere_words(sketch)
     driven = sketch.drives_of(name)
     link = sketch.tables["links"][name]
@@ -118,7 +118,7 @@ def _rows_of_link(sketch: Sketch, name: str) -> dict[str, dict[str, Any]]:
     }
 
 
-def _rows_of_guide(sketch: Sketch, k: int) -> dict[str, dict[str, Any]]:
+def _rows_of_guide(sketch: SketchParts, k: int) -> dict[str, dict[str, Any]]:
     sphere, only = _sphere_words(sketch), _("this belongs to points and links: select one")
     driven = sketch.drives_of(_guide_id(sketch, k))
     rows = {row: _row(False, only) for row in ("ground", "fixed", "trace", "mass", "load")}
@@ -256,7 +256,7 @@ def _set_drive(patch: Patch, name: str, guide: int | None, on: bool, value: Any)
     patch.add_entry("drives", entries)
 
 
-def _slide(patch: Patch, sketch: Sketch, guide: int) -> float:
+def _slide(patch: Patch, sketch: SketchParts, guide: int) -> float:
     """Displacement of the point of a guide from the place that its line goes through."""
     point = str(sketch.guides[guide].get("point"))
     start, direction = guide_line(sketch, guide)

@@ -93,11 +93,11 @@ def read_answers(text: str) -> VariantAnswers:
     entries: dict[str, Any] = json.loads(text)
     causes = tuple(_cause(entry) for entry in entries.pop("causes"))
     instants = tuple(_instant(**entry) for entry in entries.pop("instants"))
-    repaired = _repaired(entries.pop("repaired", None))
+    repaired = _repaired_answers(entries.pop("repaired", None))
     return VariantAnswers(**entries, causes=causes, instants=instants, repaired=repaired)
 
 
-def _repaired(entry: dict[str, Any] | None) -> RepairedAnswers | None:
+def _repaired_answers(entry: dict[str, Any] | None) -> RepairedAnswers | None:
     if entry is None:
         return None
     return RepairedAnswers(

@@ -19,7 +19,7 @@ from centrode.kinematics.preparation import ready
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.quantities import display_unit
 from centrode.sheets.texts import Joined, Name, Number, Sentence
 from centrode.views.rotatability import cause_text
@@ -257,7 +257,7 @@ def study_variant(topology: Mechanism, variant: Variant) -> tuple[Mechanism, Mot
 
 
 def _row(name: str, rotation: Rotation, results: MotionResults) -> VariantRow:
-    status = LOCKS if results.unreached else COMPUTED
+    status = LOCKS if results.unreached_samples else COMPUTED
     cause = cause_of(rotation)
     return VariantRow(
         name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status

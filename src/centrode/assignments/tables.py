@@ -405,7 +405,7 @@ def _number(column: VariantColumn, cell: object, where: str, mechanism: Mechanis
     if given == "" or given is None:
         raise InputError(where, _("the cell is empty"), _("give every variant a value"))
     if isinstance(given, str):
-        changed = _changed(column, given, where, mechanism, path)
+        changed = _changed_number(column, given, where, mechanism, path)
         if changed is not None:
             return changed
     return _value(column, given, where)
@@ -420,7 +420,9 @@ def _value(column: VariantColumn, given: object, where: str) -> float:
     return scale_value(read_quantity(given, "ratio", where), column.factor)
 
 
-def _changed(column: VariantColumn, text: str, where: str, mechanism: Mechanism, path: str) -> float | None:
+def _changed_number(
+    column: VariantColumn, text: str, where: str, mechanism: Mechanism, path: str
+) -> float | None:
     """The number of the description changed as a cell says; None where the cell is a value.
 
     Shares and sums are those of the decimals that are written: 0.7 m and 10 % make 0.77 m to the last bit.

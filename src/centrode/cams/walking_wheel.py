@@ -22,7 +22,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.jets import Jet, quotient
 from centrode.numerics.search import Extremes, extremes, maxima_between
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.cam import Cam

@@ -57,7 +57,7 @@ def canonical_order(colours: Colours, edges: Sequence[Edge]) -> tuple[int, ...]:
     """
     matrix = _matrix(len(colours), edges)
     best: tuple[tuple[tuple[tuple[int, ...], ...], ...], tuple[int, ...]] | None = None
-    for order in _discrete_orders(_refined(colours, matrix), matrix):
+    for order in _discrete_orders(_refined_colours(colours, matrix), matrix):
         read = tuple(tuple(matrix[u][v] for v in order) for u in order)
         if best is None or read < best[0]:
             best = read, order
@@ -74,7 +74,7 @@ def _matrix(count: int, edges: Sequence[Edge]) -> list[list[tuple[int, ...]]]:
     return [[tuple(sorted(between.get((u, v), ()))) for v in range(count)] for u in range(count)]
 
 
-def _refined(colours: Colours, matrix: Matrix) -> Colours:
+def _refined_colours(colours: Colours, matrix: Matrix) -> Colours:
     """Classes of vertices, numbered, that differ by their own class or by what joins them with each class."""
     while True:
         # the class itself stands first, so that classes are only split, in an order that names do not change
@@ -104,7 +104,7 @@ def _discrete_orders(classes: Colours, matrix: Matrix) -> Iterator[tuple[int, ..
     for vertex in members[shared[0]]:
         # twice the number leaves room for the chosen vertex before the rest of its class
         chosen = tuple(2 * number - (u == vertex) for u, number in enumerate(classes))
-        yield from _discrete_orders(_refined(chosen, matrix), matrix)
+        yield from _discrete_orders(_refined_colours(chosen, matrix), matrix)
 
 
 # Graphs without weights, as many independent loops as are wanted: each grows from one with a loop less by an ear.
@@ -181,7 +181,9 @@ def _with_vertices(graph: Plain, places: Sequence[int]) -> tuple[Plain, list[int
     return (count, (*kept, *more)), ends
 
 
-def weighted(graph: ContractedGraph, binary_links: int, most: int) -> Iterator[tuple[Edge, ...]]:
+def binary_link_distributions(
+    graph: ContractedGraph, binary_links: int, most: int
+) -> Iterator[tuple[Edge, ...]]:
     """Ways to hand out so many binary links to the edges of a graph, at most `most` to each; parallel ones in order."""
     ends = [(u, v) for u, v, _weight in graph.edges]
 

@@ -21,12 +21,12 @@ from centrode.chains.kinematic_chains import (
     KinematicChain,
     chains,
     is_movable,
-    marked,
+    marked_graph,
     subgraphs,
 )
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.pairs import KinematicPair, PairedBody, kinematic_pairs
 
 Unnamed: TypeAlias = Literal["", "higher pairs", "open", "many links", "dimensions"]
@@ -127,7 +127,9 @@ def chain_of(mechanism: MechanismSource) -> ChainOfMechanism:
     mechanism = mechanism_of(mechanism)
     pairs = kinematic_pairs(mechanism)
     joined = _joined_bodies(pairs)
-    found = _counted(mechanism, joined, tuple(one.name for one in pairs if one.kind in ("gear", "rolling")))
+    found = _chain_numbers(
+        mechanism, joined, tuple(one.name for one in pairs if one.kind in ("gear", "rolling"))
+    )
     if found.higher:
         return replace(found, unnamed="higher pairs")
     if min(joined.degrees.values(), default=0) < 2:
@@ -153,11 +155,13 @@ def chain_of(mechanism: MechanismSource) -> ChainOfMechanism:
     stiff = _with_trusses_as_links(joined)
     inversions = _inversions(stiff, freedom)
     return replace(
-        _counted(mechanism, stiff, ()), inversions=inversions, unnamed="" if inversions else "dimensions"
+        _chain_numbers(mechanism, stiff, ()),
+        inversions=inversions,
+        unnamed="" if inversions else "dimensions",
     )
 
 
-def _counted(mechanism: Mechanism, joined: _JoinedBodies, higher: tuple[str, ...]) -> ChainOfMechanism:
+def _chain_numbers(mechanism: Mechanism, joined: _JoinedBodies, higher: tuple[str, ...]) -> ChainOfMechanism:
     """The numbers of links and joints."""
     return ChainOfMechanism(
         mechanism,
@@ -229,7 +233,7 @@ class _JoinedBodies:
             tuple((one, other) for one, other in self.sliding if one in chosen and other in chosen),
         )
 
-    def merged(self, same: Mapping[PairedBody, PairedBody]) -> _JoinedBodies:
+    def merge_bodies(self, same: Mapping[PairedBody, PairedBody]) -> _JoinedBodies:
         """The same with bodies put in place of others, as parts of one."""
         hinges = {name: tuple(dict.fromkeys(same[body] for body in of)) for name, of in self.hinges.items()}
         return _JoinedBodies(
@@ -262,7 +266,7 @@ def _joined_bodies(pairs: Sequence[KinematicPair]) -> _JoinedBodies:
                 same[body] = triangle[0]
     sliding = tuple(pair.bodies for pair in pairs if pair.kind == "sliding")
     given = {name: tuple(hinged) for name, hinged in hinges.items()}
-    return _JoinedBodies(tuple(bodies), given, sliding).merged(same)
+    return _JoinedBodies(tuple(bodies), given, sliding).merge_bodies(same)
 
 
 def _with_trusses_as_links(joined: _JoinedBodies) -> _JoinedBodies:
@@ -279,7 +283,7 @@ def _with_trusses_as_links(joined: _JoinedBodies) -> _JoinedBodies:
     if not part:
         return joined
     return _with_trusses_as_links(
-        joined.merged({body: part[0] if body in part else body for body in joined.bodies})
+        joined.merge_bodies({body: part[0] if body in part else body for body in joined.bodies})
     )
 
 
@@ -313,7 +317,7 @@ def _inversions(joined: _JoinedBodies, freedom: int) -> tuple[ChainInversion, ..
     for trees in product(*(tuple(_trees(bodies)) for bodies in joined.hinges.values())):
         joints = [*firm, *(joint(*edge) for tree in trees for edge in tree)]
         if _is_chain(joints, len(joined.bodies), freedom):
-            found.setdefault(marked(joints, 0), joints)
+            found.setdefault(marked_graph(joints, 0), joints)
     chains_of = [(graph, KinematicChain.of(joints)) for graph, joints in found.items()]
     inversions = [ChainInversion(chain, 1 + chain.inversion_of(graph)) for graph, chain in chains_of]
     return tuple(sorted(inversions, key=lambda one: (one.chain.graph, one.number)))
@@ -341,5 +345,5 @@ def _is_chain(joints: Sequence[Joint], links: int, freedom: int) -> bool:
         return False
     if 3 * (links - 1) - 2 * len(joints) != freedom:
         return False
-    graph = marked(joints, 0)
+    graph = marked_graph(joints, 0)
     return is_movable(graph.vertices, graph.edges, subgraphs(graph))

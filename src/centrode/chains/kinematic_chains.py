@@ -15,7 +15,12 @@ from functools import cache, cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
-from centrode.chains.contracted_graphs import ContractedGraph, Edge, graphs_of_loops, weighted
+from centrode.chains.contracted_graphs import (
+    ContractedGraph,
+    Edge,
+    binary_link_distributions,
+    graphs_of_loops,
+)
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -108,13 +113,15 @@ class KinematicChain:
         """Links that differ as frames, polygonal ones last, each with those that symmetry exchanges with it."""
         classes: dict[ContractedGraph, list[int]] = {}
         for link in range(self.links):
-            classes.setdefault(marked(self.joints, link), []).append(link)
+            classes.setdefault(marked_graph(self.joints, link), []).append(link)
         ordered = sorted(classes.values(), key=lambda links: (self.degrees[links[0]], links))
         return tuple(Inversion(links[0], tuple(links)) for links in ordered)
 
     def inversion_of(self, graph: ContractedGraph) -> int:
         """Place among the inversions of one that `marked` gives."""
-        return next(k for k, one in enumerate(self.inversions) if marked(self.joints, one.frame) == graph)
+        return next(
+            k for k, one in enumerate(self.inversions) if marked_graph(self.joints, one.frame) == graph
+        )
 
     @cached_property
     def has_cut_link(self) -> bool:
@@ -156,7 +163,7 @@ def _strings(neighbours: dict[int, list[int]], ends: Sequence[int]) -> Iterator[
             yield [*string, link]
 
 
-def marked(joints: Sequence[Joint], link: int) -> ContractedGraph:
+def marked_graph(joints: Sequence[Joint], link: int) -> ContractedGraph:
     """The contracted graph of a chain with one link marked: equal for links that symmetry exchanges."""
     return contract(joints, link)
 
@@ -189,7 +196,7 @@ def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[K
     ((4, 2), 2, 3)
     """
     _check_links(links, mobility)
-    return _enumerated(links, mobility, cut_links)
+    return _enumerated_chains(links, mobility, cut_links)
 
 
 def _check_links(links: int, mobility: int) -> None:
@@ -214,7 +221,7 @@ def _check_links(links: int, mobility: int) -> None:
 
 
 @cache
-def _enumerated(links: int, mobility: int, cut_links: bool) -> tuple[KinematicChain, ...]:
+def _enumerated_chains(links: int, mobility: int, cut_links: bool) -> tuple[KinematicChain, ...]:
     # joints = links - 1 + loops, put into the formula of mobility
     loops = (links - 1 - mobility) // 2
     if loops == 1:
@@ -226,7 +233,7 @@ def _enumerated(links: int, mobility: int, cut_links: bool) -> tuple[KinematicCh
             continue
         groups = subgraphs(graph)
         # without a string of b links the rest has b - 2 degrees of freedom less, and has to keep one
-        for edges in weighted(graph, binary, mobility + 1):
+        for edges in binary_link_distributions(graph, binary, mobility + 1):
             if is_movable(graph.vertices, edges, groups):
                 found.add(ContractedGraph.of(graph.colours, edges))
     ordered = map(KinematicChain, sorted(found, key=lambda graph: (graph.vertices, graph)))

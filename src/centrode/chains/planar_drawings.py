@@ -79,7 +79,7 @@ def chain_sketch(chain: KinematicChain) -> ChainSketch:
     places = (
         _barycentric(around, loops[:-1], list(dict.fromkeys(loops[-1]))) if loops else _circle(len(number))
     )
-    places = _evened(
+    places = _evened_places(
         places / np.linalg.norm(places[sides[:, 0]] - places[sides[:, 1]], axis=1).mean(), around
     )
     return ChainSketch(chain, places, tuple(map(tuple, around)), crossing_pairs(places, sides))
@@ -235,7 +235,7 @@ class _Springs:
         return total, slope
 
 
-def _evened(places: Array, around: Rings) -> Array:
+def _evened_places(places: Array, around: Rings) -> Array:
     """Places with sides more alike, and no more crossings than before."""
     springs, sides = _Springs.of(around, len(places)), _sides(around)
     crossings, (energy, slope) = crossing_pairs(places, sides), springs.energy(places)

@@ -132,7 +132,7 @@ def animate(
                 said=said,
             )
     click.echo(_(description.title) or described)
-    click.echo("\n" + render.aligned(_rows(made)))
+    click.echo("\n" + render.aligned_text(_rows(made)))
     for note in made.notes:
         click.echo(_("note: {note}").format(note=note))
     click.echo("\n" + _("wrote {file}").format(file=path))

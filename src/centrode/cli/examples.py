@@ -63,7 +63,7 @@ def _listing() -> str:
         ),
     }
     lines = iter(
-        render.aligned(_rows([name for kind in kinds for name in ct.example_names(kind)])).splitlines()
+        render.aligned_text(_rows([name for kind in kinds for name in ct.example_names(kind)])).splitlines()
     )
     parts = []
     for kind, (counted, behind) in kinds.items():

@@ -192,7 +192,7 @@ def _summary(made: Report) -> str:
         for chapter in _outline().outline_of(made)
         for heading in chapter.headings
     ]
-    return f"{made.title}\n\n{render.aligned(chapters)}"
+    return f"{made.title}\n\n{render.aligned_text(chapters)}"
 
 
 def _told(made: Report, description: str) -> None:

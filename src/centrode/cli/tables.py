@@ -13,7 +13,7 @@ from centrode.errors import InputError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    from centrode.render.table_spelling import TableSpelling
+    from centrode.render.table_files import TableSpelling
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

@@ -39,7 +39,7 @@ class LinkMotion:
     bending: float
 
     @property
-    def reduced(self) -> float:
+    def reduced_share(self) -> float:
         """Share of the link in the reduced inertia [kg m^2; of a displacement kg]."""
         return self.mass * abs(self.velocity) ** 2 + self.inertia * self.turning**2
 

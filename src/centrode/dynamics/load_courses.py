@@ -141,7 +141,7 @@ def _depends_on(term: LoadTerm) -> str:
     amount = term.amount
     if "x" in amount.uses or (term.gate is not None and isinstance(amount, Constant)):
         return "place"
-    return "speed" if "v" in amount.uses or amount.sensed else ""
+    return "speed" if "v" in amount.uses or amount.depends_on_sense else ""
 
 
 def driving_moments(mechanism: Mechanism, reduction: xr.Dataset) -> Array | None:

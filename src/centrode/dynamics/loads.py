@@ -85,9 +85,9 @@ class Situation(NamedTuple):
 
 # A law is a force [N] or moment [N m] along its coordinate, and answers for itself: `uses` is which of t, q, x, v it
 # depends on; `levels` the values of the coordinate at which it has a kink; `jumps` whether it may jump where the
-# coordinate turns round; `sensed` whether it depends on which way the coordinate goes; `by_place` whether it can be
-# represented by the value of the drive, once for each sense; `energy_class` what becomes of its work, and of what is
-# stored `energy` how much that is.
+# coordinate turns round; `depends_on_sense` whether it depends on which way the coordinate goes; `by_place` whether it
+# can be represented by the value of the drive, once for each sense; `energy_class` what becomes of its work, and of
+# what is stored `energy` how much that is.
 
 
 class EnergyClass(StrEnum):
@@ -106,7 +106,7 @@ class Constant:
     uses: frozenset[str] = frozenset()
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
 
     energy_class = EnergyClass.OTHER
     by_place = True
@@ -133,7 +133,7 @@ class LoadFormula:
 
     formula: TextFormula
     levels: tuple[float, ...] = ()
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
     by_place = False
 
@@ -166,7 +166,7 @@ class TorsionSpring:
     uses: frozenset[str] = frozenset("x")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.STORED
     by_place = False
 
@@ -187,7 +187,7 @@ class StraightSpring:
     uses: frozenset[str] = frozenset("x")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.STORED
     by_place = True
 
@@ -211,7 +211,7 @@ class Damper:
     uses: frozenset[str] = frozenset("v")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.FRICTION
     by_place = False
 
@@ -239,16 +239,16 @@ class Friction:
     @property
     def jumps(self) -> bool:
         """Dry friction changes its sense at once."""
-        return self.sensed
+        return self.depends_on_sense
 
     @property
-    def sensed(self) -> bool:
+    def depends_on_sense(self) -> bool:
         """Whether there is dry friction."""
         return not (isinstance(self.dry, Constant) and self.dry.value == 0.0)
 
     def __call__(self, now: Situation) -> Number:
         found = -self.viscous * now.v - self.quadratic * now.v * now.m.abs(now.v)
-        return found - now.sense * self.dry(now) if self.sensed else found
+        return found - now.sense * self.dry(now) if self.depends_on_sense else found
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ class Square:
     uses: frozenset[str] = frozenset("v")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.FRICTION
     by_place = False
 
@@ -287,7 +287,7 @@ class LoadDiagram:
         return len(self.rows[0]) > 2
 
     @property
-    def sensed(self) -> bool:
+    def depends_on_sense(self) -> bool:
         """Whether the way back has a column of its own."""
         return len(self.rows[0]) > 2
 
@@ -339,7 +339,7 @@ class LoadTable:
     period: float = 0.0
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
     by_place = False
 
@@ -424,7 +424,7 @@ class LoadTerm:
         slope = self.coordinate.slope(state).value
         q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
         x, v = self.coordinate.value(state), slope * state.rate
-        sense = self._sense(state, v) if self.amount.sensed else 0.0
+        sense = self._sense(state, v) if self.amount.depends_on_sense else 0.0
         now = Situation(state.time, q, x, v, sense, state.m.base)
         amount = self.amount(now)
         if self.gate is None:

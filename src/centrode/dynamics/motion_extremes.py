@@ -52,7 +52,7 @@ def extremes_of_motion(results: MotionResults, data: xr.Dataset) -> Mapping[tupl
 
     places = np.asarray(results.mechanism.motion_parameter.instants(data), dtype=np.float64)
     values = pick(data)
-    refined = not results.unreached and len(places) > 2 and bool(np.isfinite(values).all())
+    refined = not results.unreached_samples and len(places) > 2 and bool(np.isfinite(values).all())
     at = _motion_at(results, data) if refined and columns else None
     ends = [_greatest(sign * values, places, at, lambda x, s=sign: s * pick(x)) for sign in (-1.0, 1.0)]  # type: ignore[misc]
     return {

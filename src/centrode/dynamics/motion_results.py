@@ -71,7 +71,7 @@ class MotionResults:
     points: tuple[str, ...] = ()
 
     @property
-    def unreached(self) -> int:
+    def unreached_samples(self) -> int:
         """How many samples the mechanism does not reach."""
         return int(np.isin(self.motion["status"].values, STATUSES_NOT_REACHED).sum())
 
@@ -110,7 +110,7 @@ def study(
     >>> import centrode as ct
     >>> from centrode.dynamics.motion_results import study
     >>> results = study(ct.example("crank-rocker"), 37)
-    >>> results.unreached
+    >>> results.unreached_samples
     0
     """
     check_motion(motion)
@@ -202,7 +202,7 @@ def _results(
         reactions,
         refusals,
     )
-    return replace(found, limits=_limits(solved)) if found.unreached else found
+    return replace(found, limits=_limits(solved)) if found.unreached_samples else found
 
 
 def _lacks_masses_or_loads(mechanism: Mechanism) -> bool:

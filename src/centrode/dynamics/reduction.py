@@ -27,7 +27,7 @@ from centrode.kinematics.motion import (
     labels_of,
     vocabulary_variable,
 )
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.sample_index import selectable
 from centrode.kinematics.samples import MotionOnPath
@@ -188,7 +188,7 @@ class Reducer:
         """Nearest limits on both sides of the initial position; infinite where none lies between two values."""
         return self._along(np.array([first, last])).continuation.branches.reach(0)
 
-    def events(self, first: float, last: float) -> list[Event]:
+    def events(self, first: float, last: float) -> list[RadicandZero]:
         """Limits and change points between two values of the drive."""
         events = self._along(np.array([first, last])).continuation.branches.events
         return [event for event in events if first <= event.at <= last]

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.equations.linear import Condition, Draft, Unknown, UnknownPlace
+from centrode.equations.linear import Draft, LinearConstraint, Unknown, UnknownPlace
 from centrode.equations.plane_chains import Chains, shorten
 from centrode.equations.symbol_table import SymbolTable
 from centrode.equations.symbols import BEARING, LENGTH, RATIO, ZERO, Angle, Letter, Sum, SumTerm
@@ -50,14 +50,14 @@ def _stands(board: SymbolTable, wheel: NoSlip) -> bool:
     return wheel.link in board.angles and wheel.centre in board.points and wheel.on in board.placed
 
 
-def _gear(board: SymbolTable, gear: GearRatio) -> Condition:
+def _gear(board: SymbolTable, gear: GearRatio) -> LinearConstraint:
     ratio = Sum.letter(_factor(board, "u", "ratio", gear.gear, float(board.numbers.gearing.ratio[gear.gear])))
     first, second, carrier = (_variable(board, board.angles[link]) for link in gear.links)
     left = second - ratio * first + (ratio - Sum.number(1)) * carrier
     return _angular(board, f"gear {gear.gear}", left)
 
 
-def _rolling_condition(board: SymbolTable, wheel: NoSlip, draft: Draft) -> Condition:
+def _rolling_condition(board: SymbolTable, wheel: NoSlip, draft: Draft) -> LinearConstraint:
     turn, base = (_variable(board, board.angles[link]) for link in (wheel.link, wheel.on))
     track = board.numbers.gearing.track[wheel.rolling]
     if isinstance(track, Straight):
@@ -110,15 +110,17 @@ def _across(board: SymbolTable, wheel: NoSlip, centre: tuple[float, float], draf
     line = Angle.of(letter)
     at = board.points[wheel.centre].plus(board.spot(wheel.on, centre, wheel.rolling), -1)
     full = board.full[wheel.centre].plus(board.spot(wheel.on, centre, wheel.rolling, full=True), -1)
-    draft.conditions.append(Condition(f"bearing {wheel.rolling}", at.across(line), full.across(line), ZERO))
+    draft.conditions.append(
+        LinearConstraint(f"bearing {wheel.rolling}", at.across(line), full.across(line), ZERO)
+    )
     return line
 
 
-def _angular(board: SymbolTable, name: str, left: Sum) -> Condition:
+def _angular(board: SymbolTable, name: str, left: Sum) -> LinearConstraint:
     """An equation between angles; its constant is what the left side is in the initial position."""
     values = board.alphabet.values
     value = left.value(math, lambda letter: values[letter])
-    return Condition(name, left, left, Sum.letter(board.alphabet.constant(value, "rad")))
+    return LinearConstraint(name, left, left, Sum.letter(board.alphabet.constant(value, "rad")))
 
 
 def _variable(board: SymbolTable, angle: Angle) -> Sum:
@@ -209,7 +211,7 @@ def _project(draft: Draft, pair: int) -> None:
     draft.conditions.insert(place, one)
 
 
-def _independent(board: SymbolTable, draft: Draft) -> list[Condition]:
+def _independent(board: SymbolTable, draft: Draft) -> list[LinearConstraint]:
     """As many conditions as unknowns whose rows are best independent in the initial position."""
     values = board.alphabet.values
     rows = np.array(

@@ -131,7 +131,7 @@ class CofactorExpansion:
         step = ExpansionStep((Cofactor(1, (), self.matrix),))
         found = []
         while step.order > 2:
-            step = ExpansionStep(tuple(_expanded(step.terms)))
+            step = ExpansionStep(tuple(_expanded_minors(step.terms)))
             found.append(step)
         return (*found, ExpansionStep(step.terms, multiplied=True))
 
@@ -141,7 +141,7 @@ class CofactorExpansion:
         return all(len(step.terms) <= 1 for step in self.steps)
 
 
-def _expanded(terms: Sequence[Cofactor]) -> Iterator[Cofactor]:
+def _expanded_minors(terms: Sequence[Cofactor]) -> Iterator[Cofactor]:
     """Every minor expanded along the row or column with fewest entries, the first of them."""
     for term in terms:
         rows = term.minor

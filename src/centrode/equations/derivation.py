@@ -117,7 +117,7 @@ class PointVelocity:
     closed_along: SymbolFormula | None
 
     @cached_property
-    def squared(self) -> SymbolFormula:
+    def squared_speed(self) -> SymbolFormula:
         """Square of the speed."""
         components = [one.total for one in (self.x, self.y, self.z) if one is not None]
         return formula_of(sum((one * one for one in components), ZERO))
@@ -314,7 +314,7 @@ def _seconds(board: Lettering, draft: Draft, given: Given, closed: Mapping[Lette
 
 
 def _solution(system: LinearSystem, letter: Letter) -> GroupSolution:
-    return GroupSolution(system, system.solved(letter), letter)
+    return GroupSolution(system, system.solved_unknowns(letter), letter)
 
 
 def _group(
@@ -346,7 +346,7 @@ def _substitute_rates(
     solution: GroupSolution, closed: Mapping[Letter, Sum]
 ) -> tuple[SymbolFormula | None, ...]:
     """Rates with those of earlier groups put in, where one product comes out."""
-    if solution.formulas is None or solution.lettered:
+    if solution.formulas is None or solution.has_letter:
         return (None,) * len(solution.letters)
     found = []
     for formula in solution.formulas:

@@ -412,7 +412,7 @@ def position_values(equations: Equations, dataset: xr.Dataset, sample: int) -> d
         values |= _bearings(equations, values)
     else:
         values |= {x: float(dataset["drive_value"].sel(drive=one)[sample]) for x, one in board.driven.items()}
-    values |= _measured(equations, dataset, sample)
+    values |= _measured_coordinates(equations, dataset, sample)
     for branch in functions.branches:
         if branch.measure is not None:
             measure = _value(branch.measure, values)
@@ -442,7 +442,7 @@ def _bearings(equations: Equations, values: Mapping[Letter, float]) -> dict[Lett
     return found
 
 
-def _measured(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
+def _measured_coordinates(equations: Equations, dataset: xr.Dataset, sample: int) -> dict[Letter, float]:
     """Coordinates of points as the motion has them, by the letters that the measures of branches have."""
     found: dict[Letter, float] = {}
     if not isinstance(equations.board, SymbolTable):

@@ -86,7 +86,7 @@ class AngleSum:
 
 
 @dataclass(frozen=True)
-class Distance:
+class VectorLength:
     """Length of a vector by its components: the root of the sum of their squares."""
 
     parts: tuple[Sum, ...]
@@ -250,7 +250,9 @@ class TangentOfAngle:
         return (p * q + self.sign * r * sympy().sqrt(p**2 + q**2 - r**2)) / (r**2 - q**2)
 
 
-PositionFormula: TypeAlias = AngleSum | Distance | SquareRoot | VectorDirection | ArcFunction | TangentOfAngle
+PositionFormula: TypeAlias = (
+    AngleSum | VectorLength | SquareRoot | VectorDirection | ArcFunction | TangentOfAngle
+)
 
 
 def square_text(total: Sum, spelling: FormulaSpelling) -> str:

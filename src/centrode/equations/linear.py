@@ -66,7 +66,7 @@ class LinearSystem:
             )
         )
 
-    def solved(self, name: Letter) -> tuple[SymbolFormula, ...] | None:
+    def solved_unknowns(self, name: Letter) -> tuple[SymbolFormula, ...] | None:
         """The unknowns by Cramer's rule; a determinant of several terms is written as the letter `name`."""
         under, numerators = self.determinant, self.numerators
         if under is None or numerators is None or not under.number:
@@ -181,7 +181,7 @@ class UnknownPlace(NamedTuple):
 
     def across(self, angle: Angle) -> Sum:
         """Component to the left of a direction."""
-        return self.along(angle.turned(1))
+        return self.along(angle.turned_by(1))
 
 
 ORIGIN = UnknownPlace(ZERO, ZERO)
@@ -212,7 +212,7 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class Condition:
+class LinearConstraint:
     """One constraint: left = right, with what is left of it when earlier constraints are put in.
 
     Attributes
@@ -264,7 +264,7 @@ class Draft:
     points: list[str] = field(default_factory=list)
     plan: list[int] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
-    conditions: list[Condition] = field(default_factory=list)
+    conditions: list[LinearConstraint] = field(default_factory=list)
     label: str = ""
     """What the group is called where that is not its term of the structural formula."""
 
@@ -298,7 +298,7 @@ class GroupSolution:
         return self.system.unknowns
 
     @property
-    def lettered(self) -> bool:
+    def has_letter(self) -> bool:
         """Whether the formulas are written with the letter of the determinant."""
         return self.system.determinant is not None and not self.system.determinant.single
 
@@ -308,7 +308,7 @@ class GroupSolution:
             letter.name: formula.expression
             for letter, formula in zip(self.letters, formulas or (), strict=False)
         }
-        if not self.lettered or self.system.determinant is None:
+        if not self.has_letter or self.system.determinant is None:
             return found
         under = self.system.determinant.expression
         return {name: one.subs(expression(Sum.letter(self.under)), under) for name, one in found.items()}
@@ -333,7 +333,7 @@ class GroupEquations:
     label: str
     links: tuple[str, ...]
     unknowns: tuple[Unknown, ...]
-    conditions: tuple[Condition, ...]
+    conditions: tuple[LinearConstraint, ...]
     velocities: GroupSolution
     seconds: GroupSolution
     closed: tuple[SymbolFormula | None, ...]

@@ -10,7 +10,7 @@ import heapq
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from centrode.equations.linear import Condition, Draft, UnknownPlace, polar
+from centrode.equations.linear import Draft, LinearConstraint, UnknownPlace, polar
 from centrode.equations.symbol_table import SymbolLine, SymbolRod, SymbolTable, lines_of, rods_of
 from centrode.equations.symbols import Angle, Sum, quarters_of
 from centrode.structure.constraints import FRAME, AngleDrive, NoTurning
@@ -60,7 +60,7 @@ class Closing:
         self.pairs += 1
         for axis, left, long, right in zip("xy", at, full, known, strict=True):
             name = self._name(f"{axis}_{point}", of)
-            draft.conditions.append(Condition(name, left, long, right, self.pairs, closing))
+            draft.conditions.append(LinearConstraint(name, left, long, right, self.pairs, closing))
 
     def _on_frame(self, line: SymbolLine, draft: Draft) -> None:
         """A point of a chain on a line of the frame: one coordinate of it is constant."""
@@ -83,10 +83,10 @@ class Closing:
             name = self._name(f"n_{line.point}", line.name)
             left, long = at.across(heading), full.across(heading)
             board.points[line.point] = polar(at.along(heading), heading).plus(
-                polar(constant, heading.turned(1))
+                polar(constant, heading.turned_by(1))
             )
         board.constants[line.name] = constant
-        draft.conditions.append(Condition(name, left, long, constant))
+        draft.conditions.append(LinearConstraint(name, left, long, constant))
 
     def _on_body(self, line: SymbolLine, draft: Draft) -> None:
         """A point of a chain on a line of a moving body: two constraints with the displacement along it."""

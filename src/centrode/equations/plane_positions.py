@@ -13,13 +13,13 @@ from centrode.equations.inverse_functions import (
     HALF_PI,
     AngleSum,
     ArcFunction,
-    Distance,
     SquareRoot,
     VectorDirection,
+    VectorLength,
     angle_sum,
     within_a_turn,
 )
-from centrode.equations.linear import Condition, UnknownPlace, polar, system_of
+from centrode.equations.linear import LinearConstraint, UnknownPlace, polar, system_of
 from centrode.equations.position_functions import (
     Branch,
     Formula,
@@ -47,6 +47,7 @@ from centrode.structure.groups import (
     Aim,
     CylinderCircle,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Newton,
@@ -54,7 +55,6 @@ from centrode.structure.groups import (
     RigidPoint,
     Rod,
     Slot,
-    Stop,
     Touch,
     Train,
     TurnedLink,
@@ -70,7 +70,7 @@ MOST = 12
 """Terms of the longest coordinate that is written in one line."""
 
 
-class Unwritten(Exception):
+class UnwrittenGroup(Exception):
     """A group whose positions are not written in closed form."""
 
 
@@ -113,7 +113,7 @@ class _Lines:
 class PlanePositions:
     """Writes the positions of a planar mechanism whose chains are laid."""
 
-    def __init__(self, board: SymbolTable, conditions: Sequence[Condition]) -> None:
+    def __init__(self, board: SymbolTable, conditions: Sequence[LinearConstraint]) -> None:
         self.board = board
         self.conditions = conditions
         self.lines = {line.name: line for line in lines_of(board.ready)}
@@ -148,7 +148,7 @@ class PlanePositions:
             )
             try:
                 self._write(group, lines)
-            except Unwritten:
+            except UnwrittenGroup:
                 self.places, self.known, self.taken, self.values, self.deltas, self.signs = before
                 lines = _Lines()
                 self._leave(group, lines)
@@ -183,7 +183,7 @@ class PlanePositions:
             case Meet():
                 self._meet(group, out)
             case Newton():
-                raise Unwritten
+                raise UnwrittenGroup
 
     # what is known by name
 
@@ -234,7 +234,7 @@ class PlanePositions:
                 coordinates.append(total)
                 continue
             if len(total.terms) > MOST:
-                raise Unwritten
+                raise UnwrittenGroup
             letter = self._letter(PLACE - 1_000_000 + len(self.places), f"{axis}_{point}", math.nan)
             coordinates.append(self._add(out, letter, formula_of(total), "m"))
         self.places[point] = UnknownPlace(*coordinates)
@@ -243,7 +243,7 @@ class PlanePositions:
         try:
             return self.places[point]
         except KeyError:
-            raise Unwritten from None
+            raise UnwrittenGroup from None
 
     # points and angles of links
 
@@ -256,7 +256,7 @@ class PlanePositions:
         known = [name for name in self.board.local(link) if name in self.places and name != point]
         fixed = [name for name in known if name in self.board.numbers.frame]
         if not known:
-            raise Unwritten
+            raise UnwrittenGroup
         return (fixed or known)[0]
 
     def _two_points(self, link: str, first: str, second: str, out: _Lines) -> None:
@@ -270,7 +270,7 @@ class PlanePositions:
     def _towards(self, start: UnknownPlace, end: UnknownPlace, angle: Angle, out: _Lines) -> None:
         """The angle of a link from two places on it."""
         if angle.quarters == 2:  # the link points the other way
-            start, end, angle = end, start, angle.turned(2)
+            start, end, angle = end, start, angle.turned_by(2)
         way = end.plus(start, -1)
         if angle.parts and len(angle.parts) == 1 and not angle.quarters and angle.parts[0][1] == 1:
             self._add(out, angle.parts[0][0], VectorDirection(way.y, way.x), "rad")
@@ -305,7 +305,7 @@ class PlanePositions:
                 self._add(out, letter, formula, self.board.alphabet.meanings[letter].unit)
                 break
             else:
-                raise Unwritten
+                raise UnwrittenGroup
 
     def _train(self, group: Train, out: _Lines) -> None:
         waiting = [x for link in group.links for x in self._unknown(self.board.angles[link])]
@@ -313,7 +313,7 @@ class PlanePositions:
             for letter in waiting:
                 try:
                     self._linear([letter], out)
-                except Unwritten:
+                except UnwrittenGroup:
                     continue
                 waiting.remove(letter)
                 break
@@ -333,17 +333,17 @@ class PlanePositions:
             and all(x in self.known or x in unknown for x in one.residual.letters & moving)
         ]
         if len(chosen) != len(unknown):
-            raise Unwritten
+            raise UnwrittenGroup
         system = system_of([one.residual for one in chosen], unknown, [-1] * len(chosen))
         determinant = system.determinant
         if determinant is None or determinant.total.letters & moving:
-            raise Unwritten
+            raise UnwrittenGroup
         name = self._letter(
             DELTA + 1000 + len(self.taken), f"D_{self.board.alphabet.meanings[unknown[0]].names[0]}", 0.0
         )
-        formulas = system.solved(name)
+        formulas = system.solved_unknowns(name)
         if formulas is None:
-            raise Unwritten
+            raise UnwrittenGroup
         if not determinant.single:
             self._add(out, name, determinant, "1")
         for letter, formula in zip(unknown, formulas, strict=True):
@@ -373,8 +373,8 @@ class PlanePositions:
                 rod = self.rods[drive]
                 letters = {one.kind: x for x, one in board.alphabet.meanings.items() if one.names == (drive,)}
                 if not {"stroke", "cylinder"} <= letters.keys():
-                    raise Unwritten
-                direction = Angle.of(letters["cylinder"]).turned(0 if rod.first == centre else 2)
+                    raise UnwrittenGroup
+                direction = Angle.of(letters["cylinder"]).turned_by(0 if rod.first == centre else 2)
                 return _Circle(point, centre, self._place(centre), Sum.letter(letters["stroke"]), direction)
             case Rail(point, guide, _on):
                 return self._track(point, guide, False)
@@ -385,7 +385,7 @@ class PlanePositions:
             case Touch():
                 return self._round_track(locus, group)
             case _:
-                raise Unwritten
+                raise UnwrittenGroup
 
     def _round_track(self, locus: Touch, group: Meet) -> _Circle:
         """The circle of a wheel's centre about that of its track; carried, the circle of the group's own point."""
@@ -400,7 +400,7 @@ class PlanePositions:
             None,
         )
         if letter is None or isinstance(rod.first, str):
-            raise Unwritten
+            raise UnwrittenGroup
         body, local = rod.first
         radius = board.alphabet.size(LENGTH, f"l_{name}", "reach", (name,), rod.length)
         own = board.local(body)
@@ -413,10 +413,10 @@ class PlanePositions:
             return _Circle(locus.point, hub or name, self._place(first).plus(arm), radius, Angle.of(letter))
         point = group.points[0]
         at = self._place(locus.point).plus(self._arm(group, point, first), -1).plus(arm, -1)
-        return _Circle(point, locus.point, at, radius, Angle.of(letter).turned(2))
+        return _Circle(point, locus.point, at, radius, Angle.of(letter).turned_by(2))
 
     def _meet(self, group: Meet, out: _Lines) -> None:
-        stop = next((locus for locus in group.loci if isinstance(locus, Stop)), None)
+        stop = next((locus for locus in group.loci if isinstance(locus, GuideStop)), None)
         if stop is not None:
             self._write_stop(group, stop, out)
             return
@@ -455,7 +455,7 @@ class PlanePositions:
         way = end.plus(start, -1)
         chain = self._chain(names)
         letter = self._letter(LENGTH - 1_000_000 + self.deltas, f"l_{join_points(*names)}", math.nan)
-        self._add(out, letter, Distance(tuple(one for one in way if one)), "m", chain)
+        self._add(out, letter, VectorLength(tuple(one for one in way if one)), "m", chain)
         return way, letter
 
     def _chain(self, names: tuple[str, str]) -> Formula | None:
@@ -498,7 +498,7 @@ class PlanePositions:
             found |= {_coordinate("x", point): at.real, _coordinate("y", point): at.imag}
         return found
 
-    def _measured(self, point: str) -> UnknownPlace:
+    def _measured_place(self, point: str) -> UnknownPlace:
         """Where the motion has a point that is not written yet."""
         return UnknownPlace(Sum.letter(_coordinate("x", point)), Sum.letter(_coordinate("y", point)))
 
@@ -516,7 +516,7 @@ class PlanePositions:
         square = Sum.letter(length, 2) + main.radius * main.radius - far.radius * far.radius
         corner = formula_of(square.divide(_product(main.radius)).scale(Fraction(1, 2)).divide(_term(length)))
         angle = self._auxiliary_angle(ArcFunction("arccos", corner), out)
-        arm = self._measured(main.point).plus(main.at, -1)
+        arm = self._measured_place(main.point).plus(main.at, -1)
         sign = self._sign(way.x * arm.y - way.y * arm.x, out)
         out.names, out.auxiliary = (main.point, main.centre, far.centre), (length, direction, angle)
         self._turn(main.direction, base + sign * Sum.letter(angle), out)
@@ -536,7 +536,7 @@ class PlanePositions:
             height = way.across(track.heading) - track.offset
         sine = formula_of(height.divide(_product(one.radius)))
         angle = self._auxiliary_angle(ArcFunction("arcsin", sine), out)
-        arm = self._measured(one.point).plus(one.at, -1)
+        arm = self._measured_place(one.point).plus(one.at, -1)
         sign = self._sign(arm.along(track.heading), out)
         out.names, out.auxiliary = (one.point, one.centre, track.line.name), (angle,)
         # ahead: heading - delta; behind: heading + pi + delta
@@ -549,14 +549,14 @@ class PlanePositions:
     def _tracks(self, group: Meet, one: _SymbolTrack, other: _SymbolTrack, out: _Lines) -> None:
         """PRP and RPP: two linear equations."""
         if not group.points:
-            raise Unwritten
+            raise UnwrittenGroup
         point = one.point if not one.carried else other.point if not other.carried else group.points[0]
         first, second = (self._line_of(group, track, point) for track in (one, other))
         sine = formula_of(Sum.wave("sin", one.heading.plus(other.heading, -1)))
         if not sine.number or not sine.single:
-            raise Unwritten
+            raise UnwrittenGroup
         (base, offset), (other_base, other_offset) = first, second
-        start = base.plus(polar(offset, one.heading.turned(1)))
+        start = base.plus(polar(offset, one.heading.turned_by(1)))
         height = other_offset - start.plus(other_base, -1).across(other.heading)
         slide = height.divide(sine.product).scale(Fraction(1) / Fraction(sine.number))
         at = start.plus(polar(slide, one.heading))
@@ -573,12 +573,12 @@ class PlanePositions:
         # the known point is at the offset from the line's base, which the carriage has beside the point
         return self._place(track.point).plus(self._arm(group, point, base), -1), -track.offset
 
-    def _write_stop(self, group: Meet, stop: Stop, out: _Lines) -> None:
+    def _write_stop(self, group: Meet, stop: GuideStop, out: _Lines) -> None:
         """A point whose displacement on a guide is driven."""
         line = self.lines[stop.guide]
         letter = next((x for x, name in self.board.driven.items() if name == stop.drive), None)
         if letter is None:
-            raise Unwritten
+            raise UnwrittenGroup
         base = self.board.base(line)
         start = UnknownPlace(ZERO, ZERO) if base is None else self._place(base)
         if group.carriage is not None:
@@ -600,7 +600,7 @@ class PlanePositions:
             inside = inside.plus(board.arm(group.block, group.target, group.sliding), -1)
         offset = merge_waves(inside.across(heading))
         if offset.letters & board.alphabet.rates.keys() or len(offset.terms) > SHORT:
-            raise Unwritten
+            raise UnwrittenGroup
         way, length = self._auxiliary_vector(pivot, target, (group.pivot, group.target), out)
         direction, turned = self._base_angle(way, out)
         out.names = (group.target, group.pivot, line.name)
@@ -661,7 +661,7 @@ class PlanePositions:
             else:
                 start = self.places[base]
         if line.point not in self.places:
-            raise Unwritten
+            raise UnwrittenGroup
         way = self.places[line.point].plus(start, -1)
         far = board.track(line, ZERO).along(heading)
         self._add(out, letter, formula_of(merge_waves(way.along(heading) - far)), "m")
@@ -683,7 +683,7 @@ class PlanePositions:
             if one.kind in ("bearing", "cylinder") and rod is not None and {rod.first, rod.second} & points:
                 letters.append(x)
         for letter in sorted(set(letters)):
-            with suppress(Unwritten):
+            with suppress(UnwrittenGroup):
                 self._linear([letter] if letter not in self.known else [], out)
         out.unsolved = tuple(dict.fromkeys(x for x in sorted(letters) if x not in self.known))
         self.known.update(out.unsolved)
@@ -725,7 +725,7 @@ def _product(total: Sum) -> SumTerm:
     """A length that is one product."""
     (term, number), *others = total.terms.items()
     if others or number != 1:
-        raise Unwritten
+        raise UnwrittenGroup
     return term
 
 

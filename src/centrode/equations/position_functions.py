@@ -133,7 +133,7 @@ class PositionFunctions:
         return tuple(group.branch for group in self.groups if group.branch is not None)
 
     @property
-    def unsolved(self) -> tuple[Letter, ...]:
+    def unsolved_letters(self) -> tuple[Letter, ...]:
         """Letters that have no closed form."""
         return tuple(letter for group in self.groups for letter in group.unsolved)
 

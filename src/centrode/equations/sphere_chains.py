@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from centrode.equations.linear import Condition, Draft
+from centrode.equations.linear import Draft, LinearConstraint
 from centrode.equations.symbol_table import Lettering
 from centrode.equations.symbols import (
     BEARING,
@@ -57,7 +57,7 @@ class Axes(NamedTuple):
     along: SpherePlace
     left: SpherePlace
 
-    def turned(self, angle: Angle) -> Axes:
+    def turned_by(self, angle: Angle) -> Axes:
         """Turned in its place, counter-clockwise seen from outside."""
         cosine, sine = Sum.wave("cos", angle), Sum.wave("sin", angle)
         return Axes(
@@ -111,9 +111,9 @@ class SphereClosure(NamedTuple):
 
     plan: int
     turn: Letter
-    closing: Condition
+    closing: LinearConstraint
     lean: Letter
-    leaning: Condition
+    leaning: LinearConstraint
     places: tuple[str, str, str]
     label: str
 
@@ -182,7 +182,7 @@ class SphereBoard(Lettering):
         """Where a point lies in the initial position."""
         return np.array([float(x) for x in self.ready.assembled.positions.points[point]])
 
-    def carried(self, body: str, inside: Vector) -> Vector:
+    def initial_place(self, body: str, inside: Vector) -> Vector:
         """Where a place of a body lies in the initial position."""
         pose = self.ready.assembled.positions.poses[body]
         axes = np.array([[float(x) for x in axis] for axis in pose])
@@ -273,7 +273,7 @@ class SphereBoard(Lettering):
             return self.axes[body]
         arc = self.arc(body, first, point)
         corner = self.between(first, second, point, (inside[first], inside[second], inside[point]))
-        return self.axes[body].turned(corner).move(arc)
+        return self.axes[body].turned_by(corner).move(arc)
 
     def towards(self, body: str, pivot: str, end: str | None) -> tuple[Axes, str]:
         """Axes in a point of a placed body along the arc to another of its points, and the name of that one.
@@ -284,11 +284,11 @@ class SphereBoard(Lettering):
         first, second = self.firsts[body]
         axes = self.seen_from(body, pivot)
         if pivot != first:
-            axes = axes.turned(BACK)
+            axes = axes.turned_by(BACK)
         own = second if pivot == first else first
         if end is None or end == own:
             return axes, own
-        return axes.turned(self.between(pivot, own, end, (inside[pivot], inside[own], inside[end]))), end
+        return axes.turned_by(self.between(pivot, own, end, (inside[pivot], inside[own], inside[end]))), end
 
     def body_of(self, point: str) -> str:
         """A placed body that has a point: the frame before others."""
@@ -366,7 +366,7 @@ def _drive(board: SphereBoard, link: str, turning: Turning) -> None:
     end = board.numbers.ends[link][0]
     axes, end = board.towards(base, pivot, end)
     turn = board.turn(link, (pivot, end, board.drive_value(drive)), Draft(), drive)
-    board.place(link, pivot, second, axes.turned(turn))
+    board.place(link, pivot, second, axes.turned_by(turn))
 
 
 def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
@@ -381,7 +381,7 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
         turn = board.turn(carrier.link, (carrier.centre, carrier.end, value), draft, None)
     else:
         turn = board.bearing(carrier.guide or "", (carrier.centre, carrier.end, value), draft)
-    out = carrier.axes.turned(turn)
+    out = carrier.axes.turned_by(turn)
     there = out.move(carrier.arc)
     if carrier.link is not None:
         board.place(carrier.link, carrier.centre, point, out)
@@ -389,7 +389,7 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     board.moving.append(point)
     far = board.points[rod.centre]
     left = Sum.wave("cos", held)
-    draft.conditions.append(Condition(f"cos {rod.centre}{point}", left, left, far.dot(there.at)))
+    draft.conditions.append(LinearConstraint(f"cos {rod.centre}{point}", left, left, far.dot(there.at)))
     leaning, angle, side = _leaning_angle(board, carrier, rod, point, held)
     board.place(rod.link, point, rod.centre, there.leaning(angle, side))
     letters = (turn.parts[0][0], angle.parts[0][0])
@@ -413,7 +413,7 @@ def _leaning_angle(
     left = Sum.wave("sin", held) * Sum.wave("sin", carrier.arc) * Sum.wave("sin", angle)
     left += Sum.wave("cos", held) * Sum.wave("cos", carrier.arc)
     right = carrier.axes.at.dot(board.points[rod.centre])
-    draft.conditions.append(Condition(f"cos {carrier.centre}{rod.centre}", left, left, right))
+    draft.conditions.append(LinearConstraint(f"cos {carrier.centre}{rod.centre}", left, left, right))
     return draft, angle, side
 
 
@@ -433,7 +433,7 @@ def _carrier(board: SphereBoard, group: Meet) -> tuple[Carrier, Rod]:
     axes, end = board.towards(base, swinging.centre, named if named in board.inside[base] else None)
     point = group.points[0]
     arc = board.arc(swinging.link, swinging.centre, point)
-    at, towards = board.at(swinging.centre), board.carried(base, board.inside[base][end])
+    at, towards = board.at(swinging.centre), board.initial_place(base, board.inside[base][end])
     return Carrier(swinging.centre, axes, towards, end, at, arc, swinging.link, None), other
 
 
@@ -445,7 +445,7 @@ def _circle(board: SphereBoard, rail: Rail) -> Carrier:
     axes, end = board.towards(rail.on, name, None)
     direction = (math.cos(float(radius)), math.sin(float(radius)))
     arc = board.constant(f"r_{rail.guide}", "arc of circle", (rail.guide,), direction)
-    at, towards = (board.carried(rail.on, board.inside[rail.on][one]) for one in (name, end))
+    at, towards = (board.initial_place(rail.on, board.inside[rail.on][one]) for one in (name, end))
     return Carrier(name, axes, towards, end, at, arc, None, rail.guide)
 
 

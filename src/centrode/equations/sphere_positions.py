@@ -12,9 +12,9 @@ from centrode.equations.inverse_functions import (
     HALF_PI,
     AngleSum,
     ArcFunction,
-    Distance,
     TangentOfAngle,
     VectorDirection,
+    VectorLength,
 )
 from centrode.equations.position_functions import (
     Branch,
@@ -88,7 +88,7 @@ class SpherePositions:
         sign = Letter(SIGN + number, f"k{number}")
         direction = self._line(base, VectorDirection(q, p), "rad")
         if r:
-            lines.append(self._line(size, Distance(tuple(total for total in (p, q) if total)), "1"))
+            lines.append(self._line(size, VectorLength(tuple(total for total in (p, q) if total)), "1"))
             lines += [direction, self._line(corner, ArcFunction("arccos", formula_of(r), size), "rad")]
         else:  # the arc is a right angle
             size = corner
@@ -128,7 +128,7 @@ class SpherePositions:
         if name in board.ready.assembled.positions.points:
             return [float(x) for x in board.at(name)]
         body = next(body for body, points in board.inside.items() if name in points)
-        return [float(x) for x in board.carried(body, board.inside[body][name])]
+        return [float(x) for x in board.initial_place(body, board.inside[body][name])]
 
     def _spherical(self, point: str, at: SpherePlace) -> SphericalCoordinates | None:
         """Angles of a point from the z axis and about it, where its coordinates are short."""

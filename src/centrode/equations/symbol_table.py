@@ -22,7 +22,7 @@ from centrode.equations.symbols import (
 )
 from centrode.geometry.plane import along
 from centrode.kinematics.preparation import Ready
-from centrode.structure.constraints import FRAME, Contact, DisplacementDrive, DistanceDrive, PointOnGuide
+from centrode.structure.constraints import FRAME, DisplacementDrive, DistanceDrive, PointOnGuide, TrackContact
 from centrode.structure.gearing import Straight
 
 # What the boards of both spaces share: letters, what moves, what the drives give.
@@ -116,7 +116,7 @@ def lines_of(ready: Ready) -> list[SymbolLine]:
                     constraint.guide, constraint.point, constraint.on, _v(through), _v(direction), drive
                 )
             )
-        if isinstance(constraint, Contact):
+        if isinstance(constraint, TrackContact):
             track = numbers.gearing.track[constraint.rolling]
             if isinstance(track, Straight):
                 normal = (-track.direction[1], track.direction[0])
@@ -141,7 +141,7 @@ def rods_of(ready: Ready) -> list[SymbolRod]:
             found.append(
                 SymbolRod(constraint.drive, constraint.first, constraint.second, length, constraint.drive)
             )
-        if isinstance(constraint, Contact):
+        if isinstance(constraint, TrackContact):
             track = numbers.gearing.track[constraint.rolling]
             if not isinstance(track, Straight):
                 reach = float(numbers.gearing.reach(constraint.rolling))
@@ -269,7 +269,7 @@ class SymbolTable(Lettering):
         names = list(local)
         if names.index(first) > names.index(second):
             size, direction = self.arm_direction(link, second, first)
-            return size, direction.turned(2)
+            return size, direction.turned_by(2)
         (ax, ay), (bx, by) = local[first], local[second]
         number = self.order[link]
         main = names[:2] == [first, second]
@@ -348,7 +348,7 @@ class SymbolTable(Lettering):
             SLIDE - 10, f"e_{line.name}", "offset beside", names, _clean(across, scale)
         )
         heading = self.heading(line)
-        return polar(far + slide, heading).plus(polar(beside, heading.turned(1)))
+        return polar(far + slide, heading).plus(polar(beside, heading.turned_by(1)))
 
     def _apart(self, at: Vector, line: SymbolLine) -> float:
         return math.hypot(*self._apart_along(at, line))

@@ -49,7 +49,7 @@ class Angle(NamedTuple):
         parts = tuple(sorted((letter, count) for letter, count in total.items() if count))
         return Angle(parts, (self.quarters + factor * other.quarters) % 4)
 
-    def turned(self, quarters: int) -> Angle:
+    def turned_by(self, quarters: int) -> Angle:
         """The angle and some right angles."""
         return Angle(self.parts, (self.quarters + quarters) % 4)
 

@@ -91,7 +91,7 @@ class Tree:
 
 
 @dataclass(frozen=True)
-class Contact:
+class WheelBody:
     """A rolling wheel as a body of its own: what slides along its line, or the arm about the centre of its circle.
 
     Attributes
@@ -116,7 +116,7 @@ def tree_of(
     mechanism: Mechanism,
     places: Mapping[str, Place],
     directions: Mapping[str, Place],
-    contacts: Sequence[Contact] = (),
+    contacts: Sequence[WheelBody] = (),
     light: Collection[str] = (),
 ) -> Tree:
     """The tree; `places` of the points and `directions` of the guides are those of the initial position [m].
@@ -180,7 +180,7 @@ def _pairs(
     mechanism: Mechanism,
     places: Mapping[str, Place],
     directions: Mapping[str, Place],
-    contacts: Sequence[Contact],
+    contacts: Sequence[WheelBody],
 ) -> list[Pair]:
     """All pairs; those of driven links with the bodies that they are driven against come first."""
     members = _members(mechanism, contacts)
@@ -205,7 +205,7 @@ def _pairs(
     return sorted(found, key=lambda pair: frozenset((pair.first, pair.second)) not in driven)
 
 
-def _members(mechanism: Mechanism, contacts: Sequence[Contact]) -> dict[str, list[str]]:
+def _members(mechanism: Mechanism, contacts: Sequence[WheelBody]) -> dict[str, list[str]]:
     """Point -> the bodies that are hinged there; a link that a guide holds needs no other slider."""
     found: dict[str, list[str]] = {}
     for point in mechanism.frame.points:
@@ -367,7 +367,7 @@ class Pose:
     def _direction(self, guide: Guide) -> Place:
         return turn_vector(guide.unit, self.angles[guide.on])
 
-    def _set_rates(self, contact: Contact) -> None:
+    def _set_rates(self, contact: WheelBody) -> None:
         """Initial speeds of the body that keeps a wheel at its track."""
         turn = self.spins[contact.wheel] - self.spins[contact.on]
         body = contact.pair.second
@@ -377,7 +377,7 @@ class Pose:
             self.spins[body] = self.spins[contact.on]
             self.slides[contact.pair.name] = turn / contact.share
 
-    def _contacts(self, *, by_slides: bool = True) -> list[Contact]:
+    def _contacts(self, *, by_slides: bool = True) -> list[WheelBody]:
         """Rolling wheels: on a line their centre slides, on a circle it turns about the circle's centre."""
         gearing = ready(self.mechanism).structure.dimensions.gearing
         found = []
@@ -389,7 +389,7 @@ class Pose:
                 pair = Pair(name, wheel.on, body, centre, direction)
                 share = -1.0 / float(gearing.radius[wheel.id])
                 if by_slides and (ways := self._ways(wheel, direction)) is not None:
-                    found.append(Contact(wheel.link, wheel.on, wheel.centre, pair, share, False, ways))
+                    found.append(WheelBody(wheel.link, wheel.on, wheel.centre, pair, share, False, ways))
                     continue
             else:
                 place = self._place_on(wheel.on, _numbers(track.centre))
@@ -397,7 +397,7 @@ class Pose:
                 pair = Pair(name, wheel.on, arm or body, place, point=f"{name} centre")
                 share = float(gearing.spin(wheel.id))
             own = pair.second == body
-            found.append(Contact(wheel.link, wheel.on, wheel.centre, pair, share, own))
+            found.append(WheelBody(wheel.link, wheel.on, wheel.centre, pair, share, own))
         return found
 
     def _ways(self, wheel: Rolling, direction: Place) -> dict[str, float] | None:

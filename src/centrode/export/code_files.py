@@ -126,7 +126,7 @@ def _c(program: MotionProgram, language: Language, body: Sequence[str], heads: S
         "#include <math.h>",
         "",
         "typedef struct {",
-        *language.indented(record),
+        *language.indented_lines(record),
         f"}} {name};",
         f"typedef {name} record;",
         "",
@@ -142,11 +142,11 @@ def _c(program: MotionProgram, language: Language, body: Sequence[str], heads: S
         "",
         *body,
         f"void {name}_prepare({name} *m, const double *dimensions) {{",
-        *language.indented([*fill, *given, *public, "find_events(m);"]),
+        *language.indented_lines([*fill, *given, *public, "find_events(m);"]),
         "}",
         "",
         f"int {name}_at({name} *m, double drive, double speed, double acceleration) {{",
-        *language.indented(["return motion_at(m, drive, speed, acceleration);"]),
+        *language.indented_lines(["return motion_at(m, drive, speed, acceleration);"]),
         "}",
     ]
 
@@ -177,7 +177,7 @@ def _python(
         "def prepare(dimensions=DIMENSIONS):",
         '    """A record whose dimensions are given: its limits and change points are looked for."""',
         "    m = Record()",
-        *language.indented([*arrays, *_defaults(program, language)]),
+        *language.indented_lines([*arrays, *_defaults(program, language)]),
         "    m.given[: len(DIMENSIONS)] = [float(x) for x in dimensions]",
         "    find_events(m)",
         "    return m",
@@ -234,7 +234,7 @@ def _matlab(
         "end",
     ]
     head = f"function [status, result, names, dimensions] = {name}(drives, dimensions, speed, acceleration)"
-    return [head, *language.indented(main), "end", "", *body, *language.helpers.splitlines()]
+    return [head, *language.indented_lines(main), "end", "", *body, *language.helpers.splitlines()]
 
 
 def _javascript(
@@ -248,7 +248,7 @@ def _javascript(
         *body,
         "function prepare(dimensions) {",
         "    const m = {};",
-        *language.indented([*arrays, *_defaults(program, language)]),
+        *language.indented_lines([*arrays, *_defaults(program, language)]),
         "    m.given.set(dimensions);" if program.paths else "",
         "    find_events(m);",
         "    return m;",

@@ -11,10 +11,10 @@ from centrode.errors import NotComputedYet
 from centrode.export.body_trees import (
     NOMINAL,
     THIN,
-    Contact,
     Pair,
     Place,
     Pose,
+    WheelBody,
     less,
     number,
     numbers,
@@ -108,7 +108,7 @@ def add_constraints(pose: Pose, root: ET.Element) -> None:
         ET.SubElement(equality, "tendon", name=contact.pair.name, tendon1=contact.pair.name)
 
 
-def _rolling(pose: Pose, contact: Contact) -> dict[str, float]:
+def _rolling(pose: Pose, contact: WheelBody) -> dict[str, float]:
     """What a wheel that rolls keeps constant: its turn against its track less that by its way or its arm."""
     pair, share = contact.pair, contact.share
     if contact.ways is not None:

@@ -266,16 +266,16 @@ class MotionProgram:
         rows = [traced.rows[k].node for k in self._rows]
         motion = [*rows, traced.residual, self._length, *traced.at_samples.values()]
 
-        def staged(name: str, array: str, numbers: Sequence[Sequence[Node]]) -> RecordFunction:
+        def stage_function(name: str, array: str, numbers: Sequence[Sequence[Node]]) -> RecordFunction:
             each = len(numbers[0]) if numbers else 1
             return RecordFunction(name, array, variables, [x for some in numbers for x in some], each)
 
         return (
             RecordFunction("evaluate_numbers", "number", given, mechanism_numbers(self.free, self.varied)),
             RecordFunction("evaluate_motion", "row", variables, motion),
-            staged("evaluate_cells", "cell", [traced.cells[guard] for guard in traced.guards]),
-            staged("evaluate_curves", "curve", [traced.curves[guard] for guard in traced.guards]),
-            staged("evaluate_bounds", "bound", [traced.bounds[guard] for guard in traced.guards]),
+            stage_function("evaluate_cells", "cell", [traced.cells[guard] for guard in traced.guards]),
+            stage_function("evaluate_curves", "curve", [traced.curves[guard] for guard in traced.guards]),
+            stage_function("evaluate_bounds", "bound", [traced.bounds[guard] for guard in traced.guards]),
             RecordFunction(
                 "evaluate_rotors",
                 "rotor",

@@ -151,7 +151,7 @@ def _undercut_corner(wheel: GearWheel) -> tuple[float, float]:
 def whole_tooth(profile: ToothProfile) -> list[OutlinePiece]:
     """Both flanks of a tooth whose middle lies on the y axis, from the gap on its right to that on its left."""
     right = [piece.rising() for piece in profile.pieces]
-    return [*right, *(piece.mirrored() for piece in reversed(right))]
+    return [*right, *(piece.mirror_image() for piece in reversed(right))]
 
 
 def wheel_outline(profile: ToothProfile) -> Array:

@@ -345,7 +345,7 @@ def implied_meeting(
         (times(inverse, d), times(inverse, less(0.0, c))),
         (times(inverse, less(0.0, b)), times(inverse, a)),
     )
-    x, y = _moved(place, loci, ways, hold)
+    x, y = _moved_place(place, loci, ways, hold)
     return x, y
 
 
@@ -357,11 +357,13 @@ def implied_meeting_on_sphere(
     # the third equation, that the place is a unit vector, depends on no locus
     longer = sphere.times(1.0 / root, place)
     a, b = (locus.gradient for locus in loci)
-    x, y, z = _moved(place, loci, (sphere.cross(b, longer), sphere.cross(longer, a)), hold)
+    x, y, z = _moved_place(place, loci, (sphere.cross(b, longer), sphere.cross(longer, a)), hold)
     return x, y, z
 
 
-def _moved(place: Place, loci: Sequence[AtDistance | OnLine], ways: Sequence[Place], hold: Hold) -> Place:
+def _moved_place(
+    place: Place, loci: Sequence[AtDistance | OnLine], ways: Sequence[Place], hold: Hold
+) -> Place:
     """A number for each axis of a place, with its derivatives: along a way for each locus, by the motion of this."""
     moved = [hold(x) for x in place]
     for locus, way in zip(loci, ways, strict=True):

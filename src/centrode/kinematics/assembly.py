@@ -35,7 +35,7 @@ from centrode.kinematics.higher_class.system import GroupSystem
 from centrode.kinematics.plan_evaluation import Kinematics, SideChoices
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rounding import ROUNDED, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import (
     Constraint,
@@ -329,7 +329,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 if isinstance(group, Newton):
                     kinematics = _start_higher(kinematics, group, at, bounded if i < last else None)
                 # the bound is needed before: it tells how far below zero a radicand may be
-                elif group.signed:
+                elif group.is_signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
                 else:
@@ -337,7 +337,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise undetermined_error(group) from None
             _check_finite(group, at)
-            decided = group.signed and stated_side(kinematics, group) is not None
+            decided = group.is_signed and stated_side(kinematics, group) is not None
             _check_angles(kinematics, group, at, ROUGH if decided else ANGLE_TOLERANCE)
             kinematics.count(i, at, ARRAYS, starting)
             if i > last:

@@ -20,16 +20,17 @@ from centrode.kinematics.plan_evaluation import (
 from centrode.locale import _
 from centrode.model.settings import Display, shown_as
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from centrode.quantities import terminal_unit
 from centrode.structure.assur import name_of
-from centrode.structure.constraints import Contact, Positions
+from centrode.structure.constraints import Positions, TrackContact
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.structure.groups import (
     Aim,
     CylinderCircle,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Newton,
@@ -37,7 +38,6 @@ from centrode.structure.groups import (
     Rod,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     TwoPointLink,
 )
@@ -127,7 +127,7 @@ def _undecided_sides(kinematics: Kinematics, group: Group) -> InputError:
     behind = [
         other
         for other in groups[groups.index(group) + 1 :]
-        if other.signed
+        if other.is_signed
         and not any(name in mechanism.assembly.sides for name in side_names(other))
         and all(mechanism.links[link].angle is None for link in other.links)
     ]
@@ -154,7 +154,7 @@ def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> f
 
 def check_sides(kinematics: Kinematics) -> None:
     """Refuse sides of what is no group with two sides, which would be passed over in silence."""
-    groups = [group for group in kinematics.structure.groups if group.signed]
+    groups = [group for group in kinematics.structure.groups if group.is_signed]
     known = [name for group in groups for name in side_names(group)]
     for name in kinematics.structure.mechanism.assembly.sides:
         if name not in known:
@@ -273,7 +273,7 @@ def circle_name(locus: Locus) -> str:
             return _("cylinder {drive}").format(drive=drive)
         case Touch(contact=contact, letter="R"):
             return _("wheel {wheel}").format(wheel=contact.rolling)
-        case Touch() | Rail() | Slot() | Stop() | Rolloff():
+        case Touch() | Rail() | Slot() | GuideStop() | Rolloff():
             return ""
         case _:
             assert_never(locus)
@@ -415,7 +415,7 @@ def check_touch(kinematics: Kinematics, at: Positions) -> None:
     """Refuse a wheel whose centre something else keeps off its track."""
     numbers = kinematics.numbers
     for constraint in kinematics.structure.redundant:
-        if not isinstance(constraint, Contact):
+        if not isinstance(constraint, TrackContact):
             continue
         (off,) = (float(x) for x in constraint.residual(ARRAYS, numbers, at))
         if abs(off) <= RESIDUAL_TOLERANCE * float(numbers.scale):

@@ -21,7 +21,7 @@ from centrode.kinematics.higher_class.system import Surroundings
 from centrode.kinematics.plan_evaluation import Branches, EvaluationPolicy, Kinematics
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.structure.constraints import Positions, mapped_pose
 from centrode.structure.dimensions import Dimensions
 

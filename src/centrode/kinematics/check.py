@@ -8,7 +8,7 @@ from centrode.chains.identification import ChainOfMechanism, chain_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
 from centrode.structure.rank import Count, count
 

@@ -36,6 +36,7 @@ from centrode.structure.groups import (
     CylinderCircle,
     Following,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Meshed,
@@ -46,7 +47,6 @@ from centrode.structure.groups import (
     Rolled,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     Train,
     TurnedLink,
@@ -483,7 +483,7 @@ def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, ro
             arm = rotate_vector(numbers.through[guide], rotor)
             direction = rotate_vector(numbers.direction[guide], rotor)
             return Line(subtract(at.points[point], arm), direction)
-        case Stop(guide=guide, on=on, drive=drive):
+        case GuideStop(guide=guide, on=on, drive=drive):
             return numbers.space.stop(m, at.poses[on], numbers.curve(guide), at.drives[drive])
         case Touch(letter="R"):
             reach = numbers.gearing.reach(locus.contact.rolling)

@@ -36,12 +36,18 @@ from centrode.kinematics.cells import (
 from centrode.kinematics.change_points import BranchedPlan, Rough, Windows, inside, numbers_of, set_numbers
 from centrode.kinematics.mesh import CLOSING_IN, cut_cells, first_changes, largest_of, low_minima
 from centrode.kinematics.path import JETS, Path, nearest_node
-from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, count_turns
+from centrode.kinematics.plan_evaluation import (
+    Branches,
+    Kinematics,
+    RadicandZero,
+    ReachedRadicand,
+    count_turns,
+)
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet, Newton
@@ -528,7 +534,9 @@ class EventScan:
         else:
             limits, touches = self.zeros.found(group, value, slope, bend, self.branches.largest[group])
             events = self._limits(group, *limits)
-            events += [Event("change point", group, int(k), float(x)) for k, x in zip(*touches, strict=True)]
+            events += [
+                RadicandZero("change point", group, int(k), float(x)) for k, x in zip(*touches, strict=True)
+            ]
         # recorded before the group's sign is requested
         self.branches.add(group, events)
 
@@ -543,7 +551,9 @@ class EventScan:
         else:
             places = list(self.zeros.found(group, value, slope, bend, largest_of(value)))
         limits = [
-            Event("limit", group, int(k), float(x)) for place in places for k, x in zip(*place, strict=True)
+            RadicandZero("limit", group, int(k), float(x))
+            for place in places
+            for k, x in zip(*place, strict=True)
         ]
         self.branches.add(group, limits)
 
@@ -560,8 +570,8 @@ class EventScan:
             return np.broadcast_to(jet.bend, shape)
         return None if isinstance(jet, Jet) else np.zeros(shape)
 
-    def _events(self, group: int, value: Array, slope: Array) -> list[Event]:
-        events: list[Event] = []
+    def _events(self, group: int, value: Array, slope: Array) -> list[RadicandZero]:
+        events: list[RadicandZero] = []
         settled = np.zeros((value.shape[0], value.shape[1] - 1), dtype=bool)
         lanes, cells = low_minima(self.mesh, value, slope)
         if len(lanes):
@@ -571,7 +581,7 @@ class EventScan:
             certain = SAFETY * bound <= self.branches.largest[group][lanes]
             touches = certain & (np.abs(least) <= SAFETY * bound)
             events += [
-                Event("change point", group, int(lane), float(x))
+                RadicandZero("change point", group, int(lane), float(x))
                 for lane, x in zip(lanes[touches], at[touches], strict=True)
             ]
             self._settle(settled, value, lanes[touches], cells[touches], SAFETY * bound[touches])
@@ -613,12 +623,12 @@ class EventScan:
         ends = np.sort([places[rows, last], places[rows, first]], axis=0)
         return lanes[rows], self.guards.roots(group, lanes[rows], *ends)
 
-    def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
+    def _limits(self, group: int, lanes: Lanes, at: Array) -> list[RadicandZero]:
         if not len(lanes):
             return []
         rises = self.guards.jets(group, lanes, at, 1).derivative(1) > 0.0
         return [
-            Event("limit", group, int(lane), float(x), bool(up))
+            RadicandZero("limit", group, int(lane), float(x), bool(up))
             for lane, x, up in zip(lanes, at, rises, strict=True)
         ]
 

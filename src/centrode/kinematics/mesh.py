@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from centrode.kinematics.change_points import REACH
 from centrode.kinematics.path import OFF_GRID, Path
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -61,7 +61,7 @@ def low_minima(mesh: Array, value: Array, slope: Array, looked: Mask | None = No
     return lanes[low], cells[low]
 
 
-def cut_cells(events: Sequence[Event], mesh: Array, value: Array) -> tuple[Lanes, Lanes, Array]:
+def cut_cells(events: Sequence[RadicandZero], mesh: Array, value: Array) -> tuple[Lanes, Lanes, Array]:
     """Cells with a value at one end only: their lanes, numbers, and the limit that is nearest to that end."""
     finite = np.isfinite(value)
     limits = [] if finite.all() else [event for event in events if event.kind == "limit"]

@@ -15,7 +15,7 @@ from centrode.kinematics.path import Path, nearest_node
 from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import Rounded
+from centrode.numerics.rounding_bounds import Rounded
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
@@ -132,7 +132,7 @@ class Kinematics:
 
     def count(self, group: int, at: Positions, m: Namespace, hooks: EvaluationPolicy) -> None:
         """Add the angles, with their turns, of links of a group on which gears or rolling wheels depend."""
-        for link in self.structure.counted[group]:
+        for link in self.structure.counted_links[group]:
             # a link that a gear turns has its angle with its turns already
             if link not in at.angles:
                 at.angles[link] = hooks.continue_angle(group, link, own_angle(m, self.numbers, at, link))
@@ -286,7 +286,7 @@ AT_THE_START = 1e-9
 
 
 @dataclass(frozen=True)
-class Event:
+class RadicandZero:
     """A place on the path where a group's radicand is zero.
 
     At a limit the mechanism locks; at a change point the two assemblies of a group meet and cross.
@@ -323,11 +323,11 @@ class Branches:
     smooth: bool
     angles: Mapping[str, float] = field(default_factory=dict)
     turns: dict[str, Turns] = field(default_factory=dict)
-    events: list[Event] = field(default_factory=list)
+    events: list[RadicandZero] = field(default_factory=list)
     crossings: dict[int, Array] = field(default_factory=dict)
     largest: dict[int, Array] = field(default_factory=dict)
 
-    def add(self, group: int, events: Sequence[Event]) -> None:
+    def add(self, group: int, events: Sequence[RadicandZero]) -> None:
         """Record the events of a group; its sign is requested only afterwards."""
         if not events:
             return
@@ -378,7 +378,7 @@ class Branches:
                 reaches[event.lane, side] = nearer(float(reaches[event.lane, side]), event.at)
         return reaches
 
-    def _is_below(self, limit: Event) -> bool:
+    def _is_below(self, limit: RadicandZero) -> bool:
         """Whether a limit bounds the reach from below; one at the start itself bounds the side that does not close."""
         # a limit at the start itself is on neither side: the side on which the group closes tells
         if limit.closes_above is not None and abs(limit.at - self.initial) <= AT_THE_START * self.unit:

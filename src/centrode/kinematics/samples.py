@@ -45,8 +45,8 @@ from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rooms import GivenRoom
-from centrode.numerics.rounding import SAFETY
-from centrode.structure.constraints import Constraint, Contact, PointInLink, Positions, contact_point
+from centrode.numerics.rounding_bounds import SAFETY
+from centrode.structure.constraints import Constraint, PointInLink, Positions, TrackContact, contact_point
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -408,7 +408,7 @@ def hinge_angles_at(course: UnwoundAngle, at: Positions, samples: Samples, param
 
 def contacts_at(kinematics: Kinematics, at: Positions, samples: Samples) -> Array:
     """Contact points (lanes, n, rolling wheels, 2) [m] in description order; NaN where there is no position."""
-    wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
+    wheels = [c for c in kinematics.structure.constraints if isinstance(c, TrackContact)]
     # in the order of the description, as its constraints are
     contacts = np.empty((*samples.status.shape, len(wheels), 2))
     for k, contact in enumerate(wheels):

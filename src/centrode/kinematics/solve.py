@@ -15,7 +15,7 @@ from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import SampleGrid, even_grid, grid_at, places_of
-from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
+from centrode.kinematics.plan_evaluation import Branches, Kinematics, PlanLayout, RadicandZero, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import (
     Kept,
@@ -79,7 +79,7 @@ class Solved:
     contacts: Array
     hinges: Array | None = None
 
-    def events(self, lane: int = 0) -> list[Event]:
+    def events(self, lane: int = 0) -> list[RadicandZero]:
         """Events between the ends of the span and the initial position, in the order of the path."""
         initial = self.ready.kinematics.path.initial
         ends = [initial, float(np.min(self.span.parameter)), float(np.max(self.span.parameter))]
@@ -263,7 +263,7 @@ def _join_branches(parts: Sequence[Branches]) -> Branches:
     if len(parts) == 1:
         return parts[0]
     lane = 0
-    events: list[Event] = []
+    events: list[RadicandZero] = []
     for part in parts:
         events += [replace(event, lane=event.lane + lane) for event in part.events]
         lane += part.lanes

@@ -451,7 +451,9 @@ def segment_formula(text: str) -> TextFormula:
     return formula
 
 
-def _placed(segment: LawSegment, start: float, before: float) -> Sequence[tuple[float, Piece | TextPiece]]:
+def _placed_pieces(
+    segment: LawSegment, start: float, before: float
+) -> Sequence[tuple[float, Piece | TextPiece]]:
     """Formulas of a segment behind others, each with its end."""
     if segment.curve == FORMULA:
         return [(start + segment.time, segment.text_piece(start, before))]
@@ -484,7 +486,7 @@ class SegmentedLaw:
         breaks, value, ends = [0.0], 0.0, list[float]()
         pieces: list[Piece | TextPiece] = []
         for number, segment in enumerate(self.segments, 1):
-            for end, piece in _placed(segment, breaks[-1], value):
+            for end, piece in _placed_pieces(segment, breaks[-1], value):
                 if not end > breaks[-1]:
                     what = _("segment {number} is too short compared with those before it").format(
                         number=number

@@ -89,7 +89,7 @@ class DrawnForce:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class PmksDrawing:
     """Everything that an address of PMKS+ says of the mechanism."""
 
     switches: int
@@ -184,7 +184,7 @@ def _hash_of(body: str) -> str:
     return written
 
 
-def _decode(payload: str) -> Drawing:
+def _decode(payload: str) -> PmksDrawing:
     sections = payload.split(".")
     if len(sections) < 7:
         raise _refusal(_("this is not a link of PMKS+: parts of it are missing"))
@@ -212,7 +212,7 @@ def _decode(payload: str) -> Drawing:
     for named in (joints, links):
         if len({one.id for one in named}) < len(named):
             raise _refusal(_("two of its parts have one name"))
-    return Drawing(
+    return PmksDrawing(
         switches,
         decimals[1] if len(decimals) > 1 and decimals[1] > 0.0 else LINEAR_SPEED,
         float(_whole(numbers[0])),
@@ -296,7 +296,7 @@ def _force(text: str) -> DrawnForce:
 # What it describes.
 
 
-def _describe(drawing: Drawing) -> Mechanism:
+def _describe(drawing: PmksDrawing) -> Mechanism:
     bodies = {link.id: link for link in drawing.links.values() if link.is_root and not link.is_block}
     if not bodies:
         raise _refusal(_("it has no link"), _("draw one"))
@@ -342,7 +342,7 @@ def _describe(drawing: Drawing) -> Mechanism:
 class _Names:
     """Names of points and links: those of the drawing where they may be names here and differ."""
 
-    def __init__(self, drawing: Drawing, bodies: Mapping[str, DrawnLink]) -> None:
+    def __init__(self, drawing: PmksDrawing, bodies: Mapping[str, DrawnLink]) -> None:
         self.points: dict[str, str] = {}
         self.links: dict[str, str] = {}
         for joint in drawing.joints.values():
@@ -374,11 +374,11 @@ class _Names:
         return name
 
 
-def _place(drawing: Drawing, place: tuple[float, float]) -> list[str]:
+def _place(drawing: PmksDrawing, place: tuple[float, float]) -> list[str]:
     return [f"{x!r} {drawing.units[0]}" for x in place]
 
 
-def _mate(drawing: Drawing, joint: DrawnJoint) -> DrawnJoint:
+def _mate(drawing: PmksDrawing, joint: DrawnJoint) -> DrawnJoint:
     """The pin that a slider carries: the other joint of its block."""
     blocks = [link for link in drawing.links.values() if link.is_block and joint.id in link.joints]
     if len(blocks) != 1 or len(blocks[0].joints) != 2:
@@ -391,7 +391,7 @@ def _mate(drawing: Drawing, joint: DrawnJoint) -> DrawnJoint:
 
 
 def _guide(
-    drawing: Drawing, bodies: Mapping[str, DrawnLink], names: _Names, joint: DrawnJoint
+    drawing: PmksDrawing, bodies: Mapping[str, DrawnLink], names: _Names, joint: DrawnJoint
 ) -> dict[str, Any]:
     """The guide of a slider: on the frame at an angle, or in the slot of a link."""
     mate = _mate(drawing, joint)
@@ -420,7 +420,7 @@ def _guide(
 
 
 def _slot(
-    drawing: Drawing, carrier: DrawnLink, names: _Names, joint: DrawnJoint, mate: DrawnJoint
+    drawing: PmksDrawing, carrier: DrawnLink, names: _Names, joint: DrawnJoint, mate: DrawnJoint
 ) -> dict[str, Any]:
     """A slot between two joints of a link, in the axes of this: from its first point towards its second."""
     start, end = (drawing.joints[one].place for one in joint.slot)
@@ -442,7 +442,7 @@ def _slot(
 
 
 def _drive(
-    drawing: Drawing, bodies: Mapping[str, DrawnLink], names: _Names, joint: DrawnJoint
+    drawing: PmksDrawing, bodies: Mapping[str, DrawnLink], names: _Names, joint: DrawnJoint
 ) -> dict[str, Any]:
     if joint.slides:
         mate = _mate(drawing, joint)
@@ -468,7 +468,7 @@ def _drive(
     return {"link": names.links[driven[0].id], "speed": f"{sense * drawing.speed!r} rpm"}
 
 
-def _check_welds(drawing: Drawing, bodies: Mapping[str, DrawnLink]) -> None:
+def _check_welds(drawing: PmksDrawing, bodies: Mapping[str, DrawnLink]) -> None:
     """A welded pin joins links into one body, or a link to its slider; anything else is not read."""
     mates = {_mate(drawing, joint).id for joint in drawing.joints.values() if joint.slides}
     for joint in drawing.joints.values():
@@ -478,7 +478,7 @@ def _check_welds(drawing: Drawing, bodies: Mapping[str, DrawnLink]) -> None:
 
 
 def _add_masses(
-    drawing: Drawing, bodies: Mapping[str, DrawnLink], names: _Names, tables: dict[str, Any]
+    drawing: PmksDrawing, bodies: Mapping[str, DrawnLink], names: _Names, tables: dict[str, Any]
 ) -> None:
     """Masses of links and blocks, unless all are those that PMKS+ begins with and no force acts."""
     blocks = [link for link in drawing.links.values() if link.is_block]
@@ -503,7 +503,7 @@ def _add_masses(
         tables["gravity"] = [0, -GRAVITY]
 
 
-def _add_block(drawing: Drawing, block: DrawnLink, names: _Names, tables: dict[str, Any]) -> None:
+def _add_block(drawing: PmksDrawing, block: DrawnLink, names: _Names, tables: dict[str, Any]) -> None:
     """A block with a mass: a body of one point, which its guide keeps from turning."""
     pins = [one for one in block.joints if one in drawing.joints and not drawing.joints[one].slides]
     guides = [guide for guide in tables["guides"] if pins and guide["point"] == names.points[pins[0]]]
@@ -533,7 +533,7 @@ def _local(pins: Sequence[tuple[float, float]], place: tuple[float, float]) -> t
 
 
 def _add_force(
-    drawing: Drawing,
+    drawing: PmksDrawing,
     bodies: Mapping[str, DrawnLink],
     names: _Names,
     tables: dict[str, Any],
@@ -572,5 +572,5 @@ def _add_force(
     tables["loads"].append({"kind": "force", "point": name, "vector": vector, **axes})
 
 
-def _pins(drawing: Drawing, body: DrawnLink) -> Iterator[str]:
+def _pins(drawing: PmksDrawing, body: DrawnLink) -> Iterator[str]:
     return (one for one in body.joints if not drawing.joints[one].slides)

@@ -14,11 +14,11 @@ from centrode.model import reading
 from centrode.model.reading import value_text
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.text_formula import compile_formula
-from centrode.optional_packages import admitted
+from centrode.optional_packages import admitted_module
 from centrode.quantities import UNIT_SYMBOLS
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
-_pint = functools.partial(admitted, "pint", "pint")
+_pint = functools.partial(admitted_module, "pint", "pint")
 
 
 @dataclass(frozen=True)

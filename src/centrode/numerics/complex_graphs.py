@@ -125,7 +125,7 @@ def _power(a: Parts, exponent: Parts) -> Parts:
     return _exponential(product(exponent, _logarithm(a)))
 
 
-def _computed(node: Node, inside: list[Parts], conditions: list[Node | None]) -> Parts:
+def _computed_parts(node: Node, inside: list[Parts], conditions: list[Node | None]) -> Parts:
     operation = node.operation
     one = inside[0]
     match operation:
@@ -183,5 +183,5 @@ def complex_parts(graph: Graph, real: Collection[str]) -> dict[str, Parts]:
             conditions[node] = getattr(m, node.operation)(*(parts[x].real for x in node.arguments))
         else:
             inside = [parts.get(x, Parts(0.0)) for x in node.arguments]
-            parts[node] = _computed(node, inside, [conditions.get(x) for x in node.arguments])
+            parts[node] = _computed_parts(node, inside, [conditions.get(x) for x in node.arguments])
     return {name: parts[node] for name, node in graph.outputs.items()}

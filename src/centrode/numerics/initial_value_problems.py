@@ -58,20 +58,20 @@ class InitialValueProblem:
         return tuple(self.rates)
 
     @cached_property
-    def fixed(self) -> tuple[str, ...]:
+    def fixed_names(self) -> tuple[str, ...]:
         """Names of what stays as it is during a step."""
         return tuple(name for name in self.closing if name not in self.rates)
 
     @cached_property
-    def carried(self) -> tuple[str, ...]:
+    def carried_names(self) -> tuple[str, ...]:
         """All that is handed from step to step."""
-        return (*self.unknowns, *self.fixed)
+        return (*self.unknowns, *self.fixed_names)
 
     @cached_property
     def key(self) -> tuple[object, ...]:
         """Key that distinguishes the problem from all others, equal in every process."""
         graphs = (self.of_rates, self.of_closing, self.of_control)
-        return self.parameters, self.carried, self.limit, self.guard, *(graph.key for graph in graphs)
+        return self.parameters, self.carried_names, self.limit, self.guard, *(graph.key for graph in graphs)
 
     @cached_property
     def of_rates(self) -> Graph:
@@ -82,7 +82,7 @@ class InitialValueProblem:
     def of_closing(self) -> Graph:
         """What a step that is taken ends with; what is not closed stays as it is."""
         values = {name: self.closing.get(name, variable(name)) for name in self.unknowns}
-        return Graph(values | {name: self.closing[name] for name in self.fixed})
+        return Graph(values | {name: self.closing[name] for name in self.fixed_names})
 
     @cached_property
     def of_control(self) -> Graph:

@@ -58,7 +58,7 @@ class StandingFactors:
     def number_of(self, form: LinearForm) -> Operand:
         """The number that a form is; factors that several have in common are multiplied once."""
         groups: dict[Node, Operand] = {}
-        for what, factor in self._merged(form).items():
+        for what, factor in self._merged_form(form).items():
             if what is not ONE:
                 key = as_node(factor)
                 groups[key] = groups[key] + what if key in groups else what
@@ -79,7 +79,7 @@ class StandingFactors:
         common: dict[Node, Operand] = {as_node(self.number_of(x)): key for key, x in groups.items()}
         return {**common, ONE: form[ONE]} if ONE in form else common
 
-    def _merged(self, form: LinearForm) -> LinearForm:
+    def _merged_form(self, form: LinearForm) -> LinearForm:
         """The form without sums of what is in the form itself: of c, s and p c + q s the last needs no product."""
         merged = dict(form)
         for what, factor in form.items():

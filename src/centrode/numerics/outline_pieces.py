@@ -43,7 +43,7 @@ class OutlinePiece:
         """The same curve as a part of another layer."""
         return replace(self, layer=layer)
 
-    def moved(self, angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> OutlinePiece:
+    def moved_by(self, angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> OutlinePiece:
         """The curve turned counter-clockwise about the origin by an angle [rad], then shifted by a vector [m]."""
         cosine, sine = math.cos(angle), math.sin(angle)
         turning = np.array([[cosine, sine], [-sine, cosine]])
@@ -52,7 +52,7 @@ class OutlinePiece:
             self, places=self.places @ turning + centre, slopes=self.slopes @ turning, normals=normals
         )
 
-    def mirrored(self) -> OutlinePiece:
+    def mirror_image(self) -> OutlinePiece:
         """The mirror image in the y axis, run through from its other end."""
         mirror = np.array([-1.0, 1.0])
         normals = None if self.normals is None else self.normals[::-1] * mirror

@@ -41,27 +41,27 @@ def _power(x: Number, exponent: Number) -> Number:
         return math.nan
 
 
-def _guarded(function: Callable[..., Number]) -> Callable[..., Number]:
+def _guarded_function(function: Callable[..., Number]) -> Callable[..., Number]:
     """A function that has no value where Python raises an error."""
 
-    def guarded(*arguments: Number) -> Number:
+    def call_guardedly(*arguments: Number) -> Number:
         try:
             return function(*arguments)
         except (OverflowError, ValueError):
             return math.nan
 
-    return guarded
+    return call_guardedly
 
 
 REAL: dict[str, Callable[..., Number]] = {
     "divide": ieee_quotient,
     "sqrt": square_root,
     "abs": abs,
-    "sin": _guarded(math.sin),
-    "cos": _guarded(math.cos),
+    "sin": _guarded_function(math.sin),
+    "cos": _guarded_function(math.cos),
     "atan2": math.atan2,
-    "exp": _guarded(math.exp),
-    "log": _guarded(math.log),
+    "exp": _guarded_function(math.exp),
+    "log": _guarded_function(math.log),
     "power": _power,
     "minimum": minimum,
     "maximum": maximum,
@@ -82,11 +82,11 @@ COMPLEX: dict[str, Callable[..., Number]] = {
     "divide": _complex_quotient,
     "sqrt": cmath.sqrt,
     "abs": lambda x: -x if _real(x) < 0.0 else x,
-    "sin": _guarded(cmath.sin),
-    "cos": _guarded(cmath.cos),
+    "sin": _guarded_function(cmath.sin),
+    "cos": _guarded_function(cmath.cos),
     "atan2": _angle,
-    "exp": _guarded(cmath.exp),
-    "log": _guarded(cmath.log),
+    "exp": _guarded_function(cmath.exp),
+    "log": _guarded_function(cmath.log),
     "power": _power,
     "minimum": lambda a, b: a if _real(a) < _real(b) else b,
     "maximum": lambda a, b: a if _real(a) > _real(b) else b,
@@ -151,7 +151,7 @@ def _operation(operation: str, inside: Sequence[str], is_complex: bool) -> str:
 
 
 @lru_cache(maxsize=128)
-def _compiled(text: str, is_complex: bool) -> Function:
+def _compiled_function(text: str, is_complex: bool) -> Function:
     names: dict[str, Any] = {**(COMPLEX if is_complex else REAL), **NUMBERS, "__builtins__": {}}
     # Nothing that a user writes is in this text. `function_text` is its only source: variables are v0, v1 ... and
     # given[0], given[1] ... by their order, constants the digits of floats, operations words of a table. So names of
@@ -163,4 +163,4 @@ def _compiled(text: str, is_complex: bool) -> Function:
 
 def python_function(graph: Graph, arguments: Sequence[str], is_complex: bool = False) -> Function:
     """A function of the numbers of some variables, in that order, that returns the outputs of a graph in order."""
-    return _compiled(function_text(graph, arguments, is_complex), is_complex)
+    return _compiled_function(function_text(graph, arguments, is_complex), is_complex)

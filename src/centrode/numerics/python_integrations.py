@@ -50,11 +50,11 @@ class PythonIntegration:
     def _control(self) -> Function:
         followed = self.problem.unknowns
         marked = [prefix + name for prefix in (OF_FIFTH, OF_THIRD, BEFORE) for name in followed]
-        names = [STEP, SIZE, *self.problem.parameters, *self.problem.carried, *marked]
+        names = [STEP, SIZE, *self.problem.parameters, *self.problem.carried_names, *marked]
         return python_function(self.problem.of_control, names, self.is_complex)
 
     def _arguments(self, *first: str) -> list[str]:
-        return [*first, *self.problem.parameters, *self.problem.carried]
+        return [*first, *self.problem.parameters, *self.problem.carried_names]
 
     def stages(
         self,
@@ -73,10 +73,10 @@ class PythonIntegration:
         start, fixed = list(carried[:count]), list(carried[count:])
         stages: list[list[Number]] = []
         for number, (row, time) in enumerate(zip(A, times, strict=True)):
-            here = _advanced(start, step, row, stages)
+            here = _advanced_values(start, step, row, stages)
             factor = slope(number)
             stages.append([x * factor for x in self.rates([time, *parameters, *here, *fixed])])
-        return _advanced(start, step, B, stages), stages
+        return _advanced_values(start, step, B, stages), stages
 
     def run(self, parameters: Array, state: Array, attempts: int, rows: Array | None = None) -> Array:
         """Attempts from a state, as `Integration.run` takes them."""
@@ -100,8 +100,8 @@ class PythonIntegration:
         count = len(problem.unknowns)
         carried = [float(x) for x in state[HEADER:]]
         time, size = float(state[0]), float(state[1])
-        limit = problem.carried.index(problem.limit) if problem.limit else None
-        guard = problem.carried.index(problem.guard) if problem.guard else None
+        limit = problem.carried_names.index(problem.limit) if problem.limit else None
+        guard = problem.carried_names.index(problem.guard) if problem.guard else None
         tried = written = 0
         while tried < attempts and (rows is None or written < len(rows)):
             left = named[END] - time
@@ -113,7 +113,7 @@ class PythonIntegration:
             values, stages = self.stages(
                 parameters, carried, [time + c * step for c in C], step, lambda _stage: 1.0
             )
-            errors = [_advanced([0.0] * count, 1.0, weights, stages) for weights in (FIFTH, THIRD)]
+            errors = [_advanced_values([0.0] * count, 1.0, weights, stages) for weights in (FIFTH, THIRD)]
             told = [
                 step,
                 size,
@@ -137,7 +137,7 @@ class PythonIntegration:
         state[HEADER:] = carried
 
 
-def _advanced(
+def _advanced_values(
     start: Sequence[Number], step: Number, weights: Sequence[float], stages: Sequence[Sequence[Number]]
 ) -> list[Number]:
     used = [(weight, stage) for weight, stage in zip(weights, stages, strict=False) if weight]

@@ -110,17 +110,17 @@ class _Translation:
                 return [self._call(call, "")]
             case ast.AnnAssign(ast.Name(name), annotation, ast.expr() as value):
                 self.names.setdefault(name, _kind(annotation))
-                return [self._assigned(name, value)]
+                return [self._assignment(name, value)]
             case ast.Assign([target], value):
-                return [self._assigned(self._text(target), value)]
+                return [self._assignment(self._text(target), value)]
             case ast.Return(value):
-                return language.returned("" if value is None else self._text(value))
+                return language.return_lines("" if value is None else self._text(value))
             case ast.If():
                 return self._choice(node, "if")
             case ast.While(test, body):
                 return [
                     language.block("while", self._text(test)),
-                    *language.indented(self._block(body)),
+                    *language.indented_lines(self._block(body)),
                     *self._end,
                 ]
             case ast.For(ast.Name(name), ast.Call(ast.Name("range"), ends), body):
@@ -129,14 +129,22 @@ class _Translation:
 
     def _choice(self, node: ast.If, word: str) -> list[str]:
         language = self.language
-        lines = [language.block(word, self._text(node.test)), *language.indented(self._block(node.body))]
+        lines = [
+            language.block(word, self._text(node.test)),
+            *language.indented_lines(self._block(node.body)),
+        ]
         match node.orelse:
             case []:
                 return lines + self._end
             case [ast.If() as other]:
                 return lines + self._choice(other, "elif")
             case others:
-                return [*lines, language.block("else"), *language.indented(self._block(others)), *self._end]
+                return [
+                    *lines,
+                    language.block("else"),
+                    *language.indented_lines(self._block(others)),
+                    *self._end,
+                ]
 
     def _loop(self, name: str, ends: Sequence[ast.expr], body: Sequence[ast.stmt]) -> list[str]:
         if self.names.get(name, WHOLE) != WHOLE:
@@ -146,7 +154,7 @@ class _Translation:
         first, last = ("0", self._text(ends[0])) if len(ends) == 1 else (self._text(x) for x in ends)
         return [
             self.language.block("for", name, first, last),
-            *self.language.indented(self._block(body)),
+            *self.language.indented_lines(self._block(body)),
             *self._end,
         ]
 
@@ -154,20 +162,22 @@ class _Translation:
     def _end(self) -> list[str]:
         return [self.language.blocks["end"]] if self.language.blocks["end"] else []
 
-    def _assigned(self, target: str, value: ast.expr) -> str:
-        if isinstance(value, ast.Call) and self._called(value) in self.gives:
+    def _assignment(self, target: str, value: ast.expr) -> str:
+        if isinstance(value, ast.Call) and self._call_of_function(value) in self.gives:
             return self._call(value, target)
         return f"{target} = {self._text(value)}{self.language.line_end}"
 
-    def _called(self, call: ast.Call) -> str:
+    def _call_of_function(self, call: ast.Call) -> str:
         return call.func.id if isinstance(call.func, ast.Name) else ""
 
     def _call(self, call: ast.Call, target: str) -> str:
         if isinstance(call.func, ast.Attribute):
             # a formula of the record
-            return self.language.called(call.func.attr, [self._text(x) for x in call.args], "", gives=False)
-        name, arguments = self._called(call), [self._text(x) for x in call.args[1:]]
-        return self.language.called(name, arguments, target, gives=bool(self.gives[name]))
+            return self.language.call_lines(
+                call.func.attr, [self._text(x) for x in call.args], "", gives=False
+            )
+        name, arguments = self._call_of_function(call), [self._text(x) for x in call.args[1:]]
+        return self.language.call_lines(name, arguments, target, gives=bool(self.gives[name]))
 
     # Expressions.
 

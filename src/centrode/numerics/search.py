@@ -21,7 +21,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.numerics.rounding import UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import UNIT_ROUNDOFF
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -71,7 +71,7 @@ class Language:
         """What opens a block."""
         return self.blocks[word].format(*parts)
 
-    def indented(self, lines: Sequence[str], depth: int = 1) -> list[str]:
+    def indented_lines(self, lines: Sequence[str], depth: int = 1) -> list[str]:
         """Lines of a block."""
         return ["    " * depth + line if line else line for line in lines]
 
@@ -82,24 +82,29 @@ class Language:
         names = [parameter for parameter, _kind in parameters]
         if self.gives_record_back:
             back = "[m, value]" if gives else "m"
-            return [f"function {back} = {name}({', '.join(['m', *names])})", *self.indented(body), "end", ""]
+            return [
+                f"function {back} = {name}({', '.join(['m', *names])})",
+                *self.indented_lines(body),
+                "end",
+                "",
+            ]
         if self.declares:
             kinds = [f"{kind} {parameter}" for parameter, kind in parameters]
             words = frozenset(re.findall(r"\w+", " ".join(body)))
             body = [f"(void){each};" for each in ("m", *names) if each not in words] + list(body)
             head = f"static {gives or 'void'} {name}({', '.join(['record *m', *kinds])}) {{"
-            return [head, *self.indented(body), "}", ""]
+            return [head, *self.indented_lines(body), "}", ""]
         if self.blocks["end"]:
-            return [f"function {name}({', '.join(['m', *names])}) {{", *self.indented(body), "}", ""]
-        return [f"def {name}({', '.join(['m', *names])}):", *self.indented(body or ["pass"]), "", ""]
+            return [f"function {name}({', '.join(['m', *names])}) {{", *self.indented_lines(body), "}", ""]
+        return [f"def {name}({', '.join(['m', *names])}):", *self.indented_lines(body or ["pass"]), "", ""]
 
-    def returned(self, value: str) -> list[str]:
+    def return_lines(self, value: str) -> list[str]:
         """Lines that end a function with a value, or with none."""
         if self.gives_record_back:
             return [f"value = {value};", "return"] if value else ["return"]
         return [f"return {value}{self.line_end}"] if value else [f"return{self.line_end}"]
 
-    def called(self, function: str, arguments: Sequence[str], target: str, gives: bool) -> str:
+    def call_lines(self, function: str, arguments: Sequence[str], target: str, gives: bool) -> str:
         """A statement that calls a function with the record; what it gives goes to `target`, or nowhere."""
         call = f"{function}({', '.join(['m', *arguments])})"
         if self.gives_record_back:
@@ -338,7 +343,10 @@ class RecordFunction:
                 condition = language.notation.operation_text(
                     "equal", [("last", ALONE), (str(first // step), ALONE)]
                 )
-                lines += [language.block("if", condition[0]), *language.indented(language.returned(""))]
+                lines += [
+                    language.block("if", condition[0]),
+                    *language.indented_lines(language.return_lines("")),
+                ]
                 lines += [language.blocks["end"]] if language.blocks["end"] else []
         return lines
 

@@ -20,7 +20,7 @@ from typing import TypeAlias
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, apply_operation, as_node
 from centrode.numerics.graphs import topological_order
 from centrode.numerics.operations import CONSTANT, VARIABLE
-from centrode.numerics.rounding import SAFETY, UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import SAFETY, UNIT_ROUNDOFF
 
 m = EXPRESSIONS
 
@@ -97,7 +97,7 @@ class TrigonometricPolynomial:
         rounded = times(roundings, times(self.norm, other.norm))
         return TrigonometricPolynomial(constant, _moving(waves), plus(carried, rounded))
 
-    def extremes(self, low: float, high: float) -> Extremes:
+    def extremes(self, low: float, high: float) -> PolynomialExtremes:
         """Bounds over a range of the variable: exact but for rounding where there is one wave at most."""
         least = greatest = reached = self.constant
         for k, (frequency, (a, b)) in enumerate(sorted(self.waves.items())):
@@ -106,11 +106,11 @@ class TrigonometricPolynomial:
             # where the longest wave is lowest, the others add no more than their greatest values
             reached = plus(reached, highest if k else lowest)
         error = times(SAFETY * UNIT_ROUNDOFF, plus(self.error, times(BOUNDING, self.norm)))
-        return Extremes(least, greatest, reached, error)
+        return PolynomialExtremes(least, greatest, reached, error)
 
 
 @dataclass(frozen=True)
-class Extremes:
+class PolynomialExtremes:
     """What a polynomial does not leave over a range, and a value that it falls to or below; each known to `error`."""
 
     least: Operand

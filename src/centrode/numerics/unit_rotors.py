@@ -33,7 +33,7 @@ def without_unit_squares(
     rotors : pairs of a cosine and its sine
     early : names of variables that are multiplied first, as they stay what they are
     """
-    return _Merging(rotors, early).merged(outputs)
+    return _Merging(rotors, early).merged_outputs(outputs)
 
 
 class _Merging:
@@ -42,7 +42,7 @@ class _Merging:
         self.early = frozenset(early)
         self.factors: dict[Node, Factors] = {}
 
-    def merged(self, outputs: Mapping[str, Node]) -> dict[str, Node]:
+    def merged_outputs(self, outputs: Mapping[str, Node]) -> dict[str, Node]:
         """Outputs with all sums merged."""
         return rebuilt(outputs, self._sum)
 

@@ -50,7 +50,7 @@ from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import Rounded, RoundedFunctions
+from centrode.numerics.rounding_bounds import Rounded, RoundedFunctions
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Newton

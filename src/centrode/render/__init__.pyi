@@ -1,6 +1,6 @@
 # One import an entry and one name an import: lazy_loader reads these lines.
 from .document.figures import svg_of as svg_of
-from .drawing.style import darkened as darkened
+from .drawing.style import darken as darken
 from .figures.pictures import figure_of as figure_of
 from .figures.pictures import figures_of as figures_of
 from .figures.pictures import write_pictures as write_pictures
@@ -17,7 +17,7 @@ from .netcdf import write_dataset as write_dataset
 from .outlines import writes_dxf as writes_dxf
 from .panel_blocks import panel_blocks as panel_blocks
 from .panel_blocks import screen_text as screen_text
-from .plain_table import aligned as aligned
+from .plain_table import aligned_text as aligned_text
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text
 from .terminal import sheet_text as sheet_text

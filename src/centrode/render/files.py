@@ -15,7 +15,7 @@ from centrode.model.settings import shown_as
 from centrode.render.netcdf import write_dataset
 from centrode.render.outlines import write_outlines
 from centrode.render.spelling import DataSpelling
-from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.render.table_files import PLAIN, TableSpelling
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display

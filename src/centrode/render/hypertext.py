@@ -78,8 +78,8 @@ class HypertextPage(MarkupPage):
 
     def relations(self, lines: Sequence[Sequence[str]]) -> str:
         """Relations, aligned, as notebooks typeset them."""
-        return self.displayed(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
+        return self.display_mathematics(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
 
-    def displayed(self, mathematics: str) -> str:
+    def display_mathematics(self, mathematics: str) -> str:
         """Mathematics on lines of its own."""
         return f"<p>$$ {html.escape(mathematics)} $$</p>"

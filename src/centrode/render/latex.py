@@ -102,10 +102,10 @@ class LatexSpelling(FormulaSpelling):
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
         top = self.join(above) or "1"
         if len(top) > LONG:
-            return rf"\frac{{1}}{{{self.unbracketed(self.join(below))}}} {top}"
-        whole = self.unbracketed(top) if len(above) == 1 else top
+            return rf"\frac{{1}}{{{self.without_brackets(self.join(below))}}} {top}"
+        whole = self.without_brackets(top) if len(above) == 1 else top
         bottom = self.join(below)
-        return rf"\frac{{{whole}}}{{{self.unbracketed(bottom) if len(below) == 1 else bottom}}}"
+        return rf"\frac{{{whole}}}{{{self.without_brackets(bottom) if len(below) == 1 else bottom}}}"
 
     def ratio(self, above: Sequence[str], below: Sequence[str]) -> str:
         return self.fraction(above, below)
@@ -113,7 +113,7 @@ class LatexSpelling(FormulaSpelling):
     def times(self, front: str, other: str) -> str:
         return rf"{front} \cdot {other}" if r"\frac" in other else f"{front} {other}"
 
-    def unbracketed(self, text: str) -> str:
+    def without_brackets(self, text: str) -> str:
         """A numerator needs no brackets of its own."""
         if not (text.startswith("(") and text.endswith(")")):
             return text

@@ -19,12 +19,12 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
-    LinearEquations,
     Listing,
     Paragraph,
     Reference,
     Section,
     Sheet,
+    SheetEquations,
     SymbolList,
     Table,
 )
@@ -88,7 +88,7 @@ class MarkupPage(PrintSpelling):
         """Relations below each other."""
 
     @abstractmethod
-    def displayed(self, mathematics: str) -> str:
+    def display_mathematics(self, mathematics: str) -> str:
         """Mathematics on lines of its own."""
 
     def symbolic(self, leaf: SymbolicLeaf) -> str:
@@ -134,10 +134,10 @@ class MarkupPage(PrintSpelling):
                 return self.paragraph(f"{self.text(heading)}: {', '.join(map(self.text, texts))}")
             case Formula(lines):
                 return self.relations([list(map(self.leaf, line)) for line in lines])
-            case LinearEquations(matrix, unknowns, right):
+            case SheetEquations(matrix, unknowns, right):
                 entries = [list(map(self.leaf, row)) for row in matrix]
                 sides = (list(map(self.leaf, side)) for side in (unknowns, right))
-                return self.displayed(linear_system(entries, *sides))
+                return self.display_mathematics(linear_system(entries, *sides))
             case SymbolList(symbols):
                 return self.table((_("symbol"), _("value"), _("meaning")), self._symbols(symbols))
             case Illustration() | Reference() | Check() | CamPlayer() | WheelPlayer() | MotionPlayer():
@@ -187,7 +187,7 @@ class LatexPage(MarkupPage):
         """Relations without numbers, aligned."""
         return "\\begin{align*}\n" + aligned_relations(lines) + "\n\\end{align*}\n"
 
-    def displayed(self, mathematics: str) -> str:
+    def display_mathematics(self, mathematics: str) -> str:
         """Mathematics on lines of its own."""
         return f"\\[\n{mathematics}\n\\]\n"
 
@@ -220,8 +220,8 @@ class MarkdownPage(MarkupPage):
 
     def relations(self, lines: Sequence[Sequence[str]]) -> str:
         """Relations, aligned."""
-        return self.displayed(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
+        return self.display_mathematics(f"\\begin{{aligned}}\n{aligned_relations(lines)}\n\\end{{aligned}}")
 
-    def displayed(self, mathematics: str) -> str:
+    def display_mathematics(self, mathematics: str) -> str:
         """Mathematics on lines of its own."""
         return f"$$\n{mathematics}\n$$\n"

@@ -20,11 +20,11 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
-    LinearEquations,
     Listing,
     Paragraph,
     Reference,
     Section,
+    SheetEquations,
     SymbolList,
     Table,
 )
@@ -57,7 +57,7 @@ def panel_blocks(
     ----------
     mathematics : formulas as MathML; without it they are spelled as on a terminal
     """
-    writer = _Writer(display, mathematics)
+    writer = _BlockWriter(display, mathematics)
     blocks: list[JSON] = []
     if sheet.heading != NOTHING:
         blocks.append({"kind": "heading", "text": writer.spelling.text(sheet.heading)})
@@ -84,7 +84,7 @@ def screen_text(text: Text, display: Display) -> str:
     return ScreenSpelling(display).text(text)
 
 
-class _Writer:
+class _BlockWriter:
     """Writes parts of a sheet as blocks."""
 
     def __init__(self, display: Display, mathematics: Mathematics | None) -> None:
@@ -130,7 +130,7 @@ class _Writer:
                 yield {"kind": "paragraph", "text": f"{text(heading)}: {', '.join(map(text, items))}"}
             case Formula():
                 yield from self.formula(block)
-            case LinearEquations(matrix, unknowns, right):
+            case SheetEquations(matrix, unknowns, right):
                 entries = [list(map(self.spelling.leaf, row)) for row in matrix]
                 sides = (list(map(self.spelling.leaf, side)) for side in (unknowns, right))
                 yield {"kind": "formula", "text": "\n".join(system_lines(entries, *sides))}
@@ -282,7 +282,7 @@ class _Writer:
         words = name if title is None else self.spelling.text(title)
         figure = render.figure_of(picture, self.display)
         light = render.svg_of(figure).decode()
-        dark = render.svg_of(render.darkened(figure)).decode()
+        dark = render.svg_of(render.darken(figure)).decode()
         return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
 
     def arrows(self, arrows: PointArrows) -> JSON:

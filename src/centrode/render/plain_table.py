@@ -9,7 +9,7 @@ WIDTH = 100
 """Columns of a paragraph and of a listing."""
 
 
-def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:
+def aligned_text(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:
     """Rows as plain text, columns aligned and two spaces apart; the columns numbered in `right` align right."""
     lines = [list(header), *rows] if header else list(rows)
     widths = [max(width_of(cell) for cell in column) for column in zip(*lines, strict=True)]

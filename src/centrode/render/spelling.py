@@ -88,7 +88,7 @@ class Spelling(ABC):
                     [Number(value, unit, digits, unit_hidden=True) for value in coordinates], unit
                 )
             case Indexed():
-                return self.indexed(text)
+                return self.with_index(text)
             case Part(part):
                 return self.part(self.text(part))
             case VectorNotation():
@@ -129,7 +129,7 @@ class Spelling(ABC):
         return spelled_unit(unit)
 
     @abstractmethod
-    def indexed(self, symbol: Indexed) -> str:
+    def with_index(self, symbol: Indexed) -> str:
         """A letter with numbers of bodies as its index."""
 
     @abstractmethod
@@ -194,7 +194,7 @@ class PlainSpelling(Spelling):
         holes = {name: self.leaf(leaf) for name, leaf in expression.values.items()}
         return expression.notation.format(**holes)
 
-    def indexed(self, symbol: Indexed) -> str:
+    def with_index(self, symbol: Indexed) -> str:
         """The letter with its index right behind it."""
         return f"{symbol.letter}{symbol.index}"
 
@@ -287,7 +287,7 @@ class FigureSpelling(PrintSpelling):
         index = symbol.index if symbol.slanted or not symbol.index else rf"\mathrm{{{symbol.index}}}"
         return formula(symbol.letter, index)
 
-    def indexed(self, symbol: Indexed) -> str:
+    def with_index(self, symbol: Indexed) -> str:
         """The letter with its index below it."""
         return f"${symbol.letter}_{{{symbol.index}}}$"
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
-from centrode.render.plain_table import WIDTH, aligned, listing
+from centrode.render.plain_table import WIDTH, aligned_text, listing
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.sheet import (
@@ -18,11 +18,11 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
-    LinearEquations,
     Listing,
     Paragraph,
     Reference,
     Section,
+    SheetEquations,
     SymbolList,
     Table,
 )
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 def facts_text(facts: Iterable[Fact], display: Display) -> str:
     """Facts below each other, their values aligned."""
-    return aligned(fact_rows(facts, display))
+    return aligned_text(fact_rows(facts, display))
 
 
 def fact_rows(facts: Iterable[Fact], display: Display) -> list[tuple[str, str]]:
@@ -82,17 +82,17 @@ def _section(section: Section, spelling: PlainSpelling) -> str:
 def _part(block: Block, spelling: PlainSpelling) -> str:
     """A block below the title of a section: sentences and formulas are indented."""
     text = _block(block, spelling)
-    if not isinstance(block, Paragraph | Formula | LinearEquations | SymbolList):
+    if not isinstance(block, Paragraph | Formula | SheetEquations | SymbolList):
         return text
     text = textwrap.indent(text, "  ")
-    return f"{text}\n" if isinstance(block, LinearEquations) else text
+    return f"{text}\n" if isinstance(block, SheetEquations) else text
 
 
 def _block(block: Block, spelling: PlainSpelling) -> str:
     """A block as lines; pictures and checks belong to documents."""
     match block:
         case FactTable(facts):
-            return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+            return aligned_text([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
         case Table():
             return table_text(block, spelling)
         case Paragraph(text):
@@ -103,7 +103,7 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             return listing(spelling.text(heading), [spelling.text(item) for item in items])
         case Formula(relations):
             return "\n".join(line for one in relations for line in relation_lines(map(spelling.leaf, one)))
-        case LinearEquations(matrix, unknowns, right):
+        case SheetEquations(matrix, unknowns, right):
             entries = [list(map(spelling.leaf, row)) for row in matrix]
             sides = (list(map(spelling.leaf, side)) for side in (unknowns, right))
             return "\n".join(system_lines(entries, *sides))
@@ -120,7 +120,7 @@ def table_text(table: Table, spelling: PlainSpelling) -> str:
     heads, rows = table_cells(table, spelling)
     right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
     caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned(rows, heads, right)
+    return (f"{caption}\n" if caption else "") + aligned_text(rows, heads, right)
 
 
 def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:

@@ -16,12 +16,12 @@ from centrode.model.examples.catalogue import DescribedSource, files_of, reporte
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import ChapterText
 from centrode.render.document.blocks import ChapterBlocks, DescriptionText, Report, SectionBlocks
-from centrode.render.document.numbering import caption_blocks, number_blocks, refer_to_captions
+from centrode.render.document.captions import caption_blocks, number_blocks, refer_to_captions
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
 from centrode.report.note import CONCLUSIONS, as_note, standard_of, with_capital_heads
-from centrode.report.opening import move_players, opening_of
+from centrode.report.opening_pictures import move_players, opening_of
 from centrode.report.study import ReportOptions, ReportStudy, Subject, settle_options
 from centrode.version import __version__
 

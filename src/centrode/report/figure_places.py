@@ -82,7 +82,7 @@ def lonely_figures(lines: Sequence[str], layout: Layout, top: float, height: flo
     """
     first = 0
     chapters = (line for line in lines if line.startswith((FLOATING, CHAPTER_END)))
-    counts = _counted(chapters)
+    counts = _floating_figures(chapters)
     for (last_page, end), count in zip(layout.ends, counts, strict=False):
         mine = range(first, first + count)
         first += count
@@ -99,7 +99,7 @@ def lonely_figures(lines: Sequence[str], layout: Layout, top: float, height: flo
                 yield leading.get(page, leading[page + 1])
 
 
-def _counted(lines: Iterator[str]) -> Iterator[int]:
+def _floating_figures(lines: Iterator[str]) -> Iterator[int]:
     """How many figures float in each chapter."""
     count = 0
     for line in lines:

@@ -22,7 +22,7 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
-from centrode.render.document.numbering import reference
+from centrode.render.document.captions import reference
 from centrode.render.document.outline import letters_of
 from centrode.report.citations import cite_sources
 from centrode.topics.order import PARTS
@@ -66,7 +66,7 @@ def as_note(report: Report, note: ExplanatoryNote, sections: Sections) -> Report
     return replace(
         report,
         title=title,
-        opening=_referred(report.opening),
+        opening=_opening_with_reference(report.opening),
         chapters=chapters,
         title_page=None if page is None else _title_page(page, title),
         is_note=True,
@@ -152,7 +152,7 @@ def _sources(entries: Sequence[str]) -> tuple[ChapterBlocks, ...]:
     return (replace(made, role="element"),)
 
 
-def _referred(opening: tuple[Block, ...]) -> tuple[Block, ...]:
+def _opening_with_reference(opening: tuple[Block, ...]) -> tuple[Block, ...]:
     """The opening behind a sentence that names its figure."""
     figures = [block for block in opening if isinstance(block, Picture) and block.number]
     if not figures:

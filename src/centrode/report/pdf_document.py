@@ -33,8 +33,8 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.figures import picture_width
-from centrode.render.document.numbering import number_blocks
 from centrode.render.document.numbers import NO_BREAK
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.render.document.typst import quote
@@ -173,7 +173,8 @@ class Source:
     @_shown.register
     def _reference(self, block: ReferenceBlock) -> str:
         pieces = (
-            f"#formula-number({one});" if isinstance(one, int) else _joined(one) for one in block.pieces
+            f"#formula-number({one});" if isinstance(one, int) else _bracketed_text(one)
+            for one in block.pieces
         )
         return f"#par([{''.join(pieces)}])"
 
@@ -285,7 +286,8 @@ def _announces(blocks: Sequence[Block]) -> bool:
 def content(marked: str) -> str:
     """Text with mathematics between dollar signs as content."""
     parts = [
-        f"#{_inline(part.text)};" if part.mathematics else _joined(part.text) for part in parts_of(marked)
+        f"#{_inline(part.text)};" if part.mathematics else _bracketed_text(part.text)
+        for part in parts_of(marked)
     ]
     return f"[{''.join(parts)}]"
 
@@ -332,14 +334,14 @@ def _with_units(text: str) -> str:
     return _measured_quantity(chosen_language()).sub(_kept_together, _EQUAL.sub(f"={NO_BREAK}", text))
 
 
-def _joined(text: str) -> str:
+def _bracketed_text(text: str) -> str:
     """A text as content between brackets."""
     return "".join(f"#{piece};" for piece in _whole_quantities(text))
 
 
 def _span(span: Span) -> str:
     """A stretch of a user's text as content."""
-    shown = f"raw({quote(span.text)})" if span.code else f"[{_joined(span.text)}]"
+    shown = f"raw({quote(span.text)})" if span.code else f"[{_bracketed_text(span.text)}]"
     shown = f"emph({shown})" if span.emphasized else shown
     return f"#{f'strong({shown})' if span.strong else shown};"
 
@@ -475,11 +477,11 @@ def pdf_document(report: Report) -> bytes:
     *strict, plain = STANDARDS
     for standards in strict:
         with suppress(typst.TypstError):
-            return _compiled(compiler, files, standards)
-    return _compiled(compiler, files, plain)
+            return _compiled_pdf(compiler, files, standards)
+    return _compiled_pdf(compiler, files, plain)
 
 
-def _compiled(compiler: typst.Compiler, files: Any, standards: list[Any]) -> bytes:
+def _compiled_pdf(compiler: typst.Compiler, files: Any, standards: list[Any]) -> bytes:
     document, _warnings = compiler.compile_with_warnings(
         input=files, format="pdf", timestamp=EPOCH, pdf_standards=standards
     )

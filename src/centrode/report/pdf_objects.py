@@ -50,7 +50,7 @@ def _places(document: bytes, start: int) -> tuple[dict[int, int], bytes]:
     """Where each object stands, by the table of a document; and what is in its trailer."""
     places: dict[int, int] = {}
     at = start + len(b"xref")
-    while section := _SECTION.match(document, _skipped(document, at)):
+    while section := _SECTION.match(document, _skip_blanks(document, at)):
         first, count = map(int, section.groups())
         at = section.end() + 20 * count
         for number in range(count):
@@ -61,7 +61,7 @@ def _places(document: bytes, start: int) -> tuple[dict[int, int], bytes]:
     return places, text.removeprefix(b"<<").removesuffix(b">>").strip()
 
 
-def _skipped(document: bytes, at: int) -> int:
+def _skip_blanks(document: bytes, at: int) -> int:
     while document[at : at + 1].isspace():
         at += 1
     return at

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from centrode.errors import CentrodeError
 from centrode.locale import _, mark
 from centrode.render.document.blocks import Block, ChapterBlocks, SectionBlocks, shown
+from centrode.render.document.captions import Captioned
 from centrode.render.document.chapters import document_chapter
-from centrode.render.document.numbering import Captioned
 from centrode.report.study import ReportStudy
 from centrode.report.topics import result_of
 from centrode.sheets.sheet import Chapter, Section, Sheet

@@ -69,7 +69,7 @@ _MARKS = frozenset(("n", "t", "k", "r", "*", "T"))
 
 def spoken_text(marked: str) -> str:
     """A text whose mathematics, between dollar signs, is put into words."""
-    return _shortened(
+    return _shortened_text(
         "".join(spoken_formula(part.text) if part.mathematics else part.text for part in parts_of(marked))
     )
 
@@ -89,7 +89,7 @@ def spoken_formula(formula: str) -> str:
     >>> spoken_formula("x_(B) = frac(l, 2) cos phi")
     'x sub B equals l over 2 cosine φ'
     """
-    return _shortened(_Reader(check_formula(formula)).sentence())
+    return _shortened_text(_SpokenFormulaReader(check_formula(formula)).sentence())
 
 
 def spoken_relations(block: FormulaBlock) -> list[str]:
@@ -105,14 +105,14 @@ def spoken_system(block: SystemBlock) -> list[str]:
 def _spoken_lines(lines: Sequence[Sequence[str]]) -> list[str]:
     equals = f" {_(_EQUALS)} "
     room = LONGEST // max(len(lines), 1)
-    return [_shortened(equals.join(map(spoken_formula, line)), room) for line in lines]
+    return [_shortened_text(equals.join(map(spoken_formula, line)), room) for line in lines]
 
 
-def _shortened(text: str, room: int = LONGEST) -> str:
+def _shortened_text(text: str, room: int = LONGEST) -> str:
     return text if len(text) <= room else f"{text[: room - 1]}…"
 
 
-class _Reader:
+class _SpokenFormulaReader:
     """Reads a formula from left to right; what it does not know it reads as it is written."""
 
     def __init__(self, formula: str) -> None:
@@ -125,7 +125,7 @@ class _Reader:
         while self.place < len(self.tokens):
             words += self._until("")
             self.place += self.place < len(self.tokens)  # a bracket without a partner
-        return _joined(words)
+        return _joined_words(words)
 
     def _next(self) -> str:
         return self.tokens[self.place][0] if self.place < len(self.tokens) else ""
@@ -155,7 +155,7 @@ class _Reader:
         if token in _SUMS:
             return self._sum(token)
         dots = _DOTS.get(token, "") if self._opens() else ""
-        bare = _joined(self._bracket()) if dots else self._base(token)
+        bare = _joined_words(self._bracket()) if dots else self._base(token)
         below, above, primes = self._attachments()
         if below:
             bare = _("{letter} sub {index}").format(letter=bare, index=below)
@@ -176,12 +176,12 @@ class _Reader:
         if token == "mat" and self._opens():
             return self._determinant()
         if token in _FRAMES and self._opens():
-            operand = _joined(self._bracket())
+            operand = _joined_words(self._bracket())
             frame = _FRAMES[token]
             return (frame if frame == "{operand}" else _(frame)).format(operand=operand)
         if token == "(":
             self.place -= 1
-            return _joined([_(_OPEN), *self._bracket(), _(_CLOSE)])
+            return _joined_words([_(_OPEN), *self._bracket(), _(_CLOSE)])
         if token.startswith('"'):
             return _ESCAPE.sub(lambda one: chr(int(one[1], 16)) if one[1] else one[2], token[1:-1])
         if token.startswith("\\"):
@@ -212,7 +212,7 @@ class _Reader:
         frame = (
             _("{above} over {below}") if simple else _("fraction: {above}, over {below}, end of the fraction")
         )
-        return frame.format(above=_joined(above), below=_joined(below))
+        return frame.format(above=_joined_words(above), below=_joined_words(below))
 
     def _determinant(self) -> str:
         """A matrix between bars, entry by entry, its rows parted."""
@@ -229,7 +229,7 @@ class _Reader:
             else:
                 rows[-1][-1].append(self._term())
         self._take()
-        spoken = "; ".join(", ".join(map(_joined, row)) for row in rows)
+        spoken = "; ".join(", ".join(map(_joined_words, row)) for row in rows)
         return _("determinant with the rows {rows}, end of the determinant").format(rows=spoken)
 
     def _sum(self, token: str) -> str:
@@ -255,11 +255,11 @@ class _Reader:
     def _operand(self) -> str:
         """A bracket, which is not spoken, or one letter, number or function."""
         if self._next() == "(":
-            return _joined(self._bracket())
+            return _joined_words(self._bracket())
         token = self._take()
         return "*" if token == "*" else self._base(token)
 
 
-def _joined(words: Sequence[str]) -> str:
+def _joined_words(words: Sequence[str]) -> str:
     text = " ".join(word for word in words if word)
     return re.sub(r" (?=[,;.])", "", text)

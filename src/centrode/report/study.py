@@ -389,7 +389,7 @@ class Moment:
         return Status(int(self.data["status"][self.sample]))
 
     @property
-    def reached(self) -> bool:
+    def is_reached(self) -> bool:
         """Whether everything is known there."""
         return self.status == Status.OK
 
@@ -420,13 +420,13 @@ def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
         for drive, value in zip(study.mechanism.motion_parameter.drives, values, strict=True)
     ]
     if not study.mechanism.motion_parameter.is_uniform:
-        told.insert(0, f"t = {numbers.measured(float(data['time'][sample]), 's')}")
+        told.insert(0, f"t = {numbers.with_unit(float(data['time'][sample]), 's')}")
     return ", ".join(told)
 
 
 def drive_value_text(value: float, unit: str, numbers: Numbers) -> str:
     """A value of a drive with its unit; radians also in degrees, as a person thinks of them."""
-    text = numbers.measured(value, unit)
+    text = numbers.with_unit(value, unit)
     if unit == "rad" and str(numbers.display.angle) == "rad" and value:
         return f"{text} ({numbers.plain(float(np.degrees(value)))}°)"
     return text

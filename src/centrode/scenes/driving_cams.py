@@ -78,17 +78,17 @@ class DrivingCam:
         """Whether the cam turns counter-clockwise in the picture."""
         return bool(self.body.sense * np.linalg.det(self.axes) > 0.0)
 
-    def carried(self, places: Array, sample: int) -> Array:
+    def carried_places(self, places: Array, sample: int) -> Array:
         """Places (n, 2) of the cam's axes in the picture as the cam stands at a sample."""
         return self.drawn(self.body.in_frame(places, np.full(len(places), self.angles[sample])))
 
     def outline(self, sample: int) -> Array:
         """The profile as the cam stands at a sample (n, 2)."""
-        return self.carried(self._profile, sample)
+        return self.carried_places(self._profile, sample)
 
     def mark(self, sample: int) -> Array:
         """A line from the axis (2, 2) that shows how the cam has turned."""
-        return self.carried(np.array([[0.0, 0.0], [0.0, MARK * self.body.base_radius]]), sample)
+        return self.carried_places(np.array([[0.0, 0.0], [0.0, MARK * self.body.base_radius]]), sample)
 
     @cached_property
     def _profile(self) -> Array:

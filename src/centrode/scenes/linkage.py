@@ -59,7 +59,7 @@ def round_track(scene: LinkageScene, wheel: Rolling, sample: int) -> Disc | None
         return None
     centre = wheel.along.centre
     local = scene.mechanism.points_of(wheel.on)[centre] if isinstance(centre, str) else centre
-    place = scene.carried(wheel.on, local or (0.0, 0.0), sample)
+    place = scene.carried_places(wheel.on, local or (0.0, 0.0), sample)
     return None if place is None else Disc(place, scene.factor * circle)
 
 
@@ -68,7 +68,7 @@ def straight_track(scene: LinkageScene, wheel: Rolling, sample: Samples) -> tupl
     through = wheel.along.through
     if through is None:
         return None
-    start = scene.carried(wheel.on, through, sample)
+    start = scene.carried_places(wheel.on, through, sample)
     if start is None:
         return None
     way = span(slides(scene, wheel))
@@ -79,7 +79,7 @@ def straight_track(scene: LinkageScene, wheel: Rolling, sample: Samples) -> tupl
 
 def slides(scene: LinkageScene, wheel: Rolling) -> Array:
     """Way of a wheel's centre along its line at every sample."""
-    through = scene.carried(wheel.on, wheel.along.through or (0.0, 0.0), slice(None))
+    through = scene.carried_places(wheel.on, wheel.along.through or (0.0, 0.0), slice(None))
     along = turn_vectors(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, slice(None)))
     centre = scene.tracks[wheel.centre]
     offset = centre - (np.nan * centre if through is None else through)

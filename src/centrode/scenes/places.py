@@ -108,7 +108,7 @@ class LinkageScene(MotionPlaces):
     factor: float
     cams: tuple[DrivingCam, ...] = ()
 
-    def carried(self, link: str, local: Sequence[float], sample: Samples) -> Array | None:
+    def carried_places(self, link: str, local: Sequence[float], sample: Samples) -> Array | None:
         """Where a place in a link's own axes is at a sample or samples; nothing if the link has no position."""
         if link == "frame":
             return self.factor * np.asarray(local, dtype=float)
@@ -121,7 +121,7 @@ class LinkageScene(MotionPlaces):
 
     def guide_line(self, guide: Guide, sample: Samples) -> tuple[Array, Array] | None:
         """The part of a guide that its point travels, as two ends; nothing if its link has no position."""
-        start = self.carried(guide.on, self.mechanism.through(guide), sample)
+        start = self.carried_places(guide.on, self.mechanism.through(guide), sample)
         if start is None:
             return None
         turn = np.zeros(()) if guide.on == "frame" else self.turns[guide.on][sample]

@@ -44,7 +44,7 @@ class Globe(MotionPlaces):
         """Whether places lie on the side of the sphere that is seen."""
         return np.asarray(places @ self.view[2] >= 0.0)
 
-    def carried(self, link: str, local: Array, sample: int) -> Array | None:
+    def carried_places(self, link: str, local: Array, sample: int) -> Array | None:
         """Where places (..., 3) in a link's own axes are; nothing if it has no position, or one point alone."""
         if link == "frame":
             return local
@@ -60,7 +60,7 @@ class Globe(MotionPlaces):
         pole = guide.pole
         if isinstance(pole, str):
             pole = self.mechanism.points_of(guide.on)[pole]
-        centre = self.carried(guide.on, np.array(unit_vector(pole)), sample)  # type: ignore[arg-type]
+        centre = self.carried_places(guide.on, np.array(unit_vector(pole)), sample)  # type: ignore[arg-type]
         if centre is None:
             return None
         across = np.cross(centre, np.eye(3)[int(np.argmin(np.abs(centre)))])
@@ -120,14 +120,14 @@ def laid(globe: Globe, body: str, curve: Array, sample: int) -> Array | None:
     """A curve in the axes of a body (samples, 3) as it lies at a sample; nothing where the body has no position."""
     guide = sliders_of(globe.mechanism).get(body)
     if guide is None:
-        return globe.carried(body, curve, sample)
+        return globe.carried_places(body, curve, sample)
     pole = guide.pole
     if isinstance(pole, str):
         pole = globe.mechanism.points_of(guide.on)[pole]
     inside = unit_vector(pole)  # type: ignore[arg-type]
     longitude, latitude = pole  # type: ignore[misc]
     north = np.array(unit_vector((longitude, latitude + np.pi / 2)))
-    frame = globe.carried(guide.on, np.eye(3), sample)
+    frame = globe.carried_places(guide.on, np.eye(3), sample)
     if frame is None:
         return None
     point = frame @ globe.tracks[guide.point][sample]
@@ -138,4 +138,4 @@ def laid(globe: Globe, body: str, curve: Array, sample: int) -> Array | None:
         + np.sin(angle) * np.cross(axis, curve)
         + (1.0 - np.cos(angle)) * (curve @ axis)[:, None] * axis
     )
-    return globe.carried(guide.on, turned, sample)
+    return globe.carried_places(guide.on, turned, sample)

@@ -68,7 +68,7 @@ class DrawnRollers:
 
 
 @dataclass(frozen=True, eq=False)
-class Ray:
+class OutlineRay:
     """A ray from the origin to a place (2) of a curve, a text beyond that, and the other end (2) of a normal there."""
 
     text: Text
@@ -92,7 +92,7 @@ class PathDrawing:
     mechanism: Title
     places: Array
     path: Text
-    rays: tuple[Ray, ...]
+    rays: tuple[OutlineRay, ...]
     ray: Text
     normal: Text
 

@@ -190,7 +190,7 @@ class Listing:
 
 
 @dataclass(frozen=True)
-class LinearEquations:
+class SheetEquations:
     """matrix unknowns = right.
 
     Attributes
@@ -230,7 +230,7 @@ Block: TypeAlias = (
     | Check
     | Items
     | Listing
-    | LinearEquations
+    | SheetEquations
     | SymbolList
     | MotionPlayer
     | CamPlayer

@@ -16,7 +16,7 @@ import lazy_loader
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.optional_packages import how_to_install
-from centrode.sketches.sketch import MOST_STROKES, Label, Place, Ring, Sketch, Stroke
+from centrode.sketches.sketch import MOST_STROKES, Label, Place, Polyline, Sketch, SketchCircle
 
 METRES = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144, 11: 1e-10,
@@ -91,10 +91,10 @@ def _read_entity(entity: Any, sketch: Sketch) -> None:
         case "CIRCLE" | "ARC":
             place = _flat(entity.ocs().to_wcs(entity.dxf.center))
             (sketch.rings if kind == "CIRCLE" else sketch.arcs).append(
-                Ring(place, abs(entity.dxf.radius), layer)
+                SketchCircle(place, abs(entity.dxf.radius), layer)
             )
         case "POINT":
-            sketch.rings.append(Ring(_flat(entity.dxf.location), 0.0, layer))
+            sketch.rings.append(SketchCircle(_flat(entity.dxf.location), 0.0, layer))
         case "TEXT":
             aligned = entity.dxf.get("align_point") if entity.dxf.get("halign", 0) else None
             place = _flat(entity.ocs().to_wcs(aligned or entity.dxf.insert))
@@ -103,12 +103,12 @@ def _read_entity(entity: Any, sketch: Sketch) -> None:
             sketch.labels.append(Label(entity.plain_text()[:100], _flat(entity.dxf.insert), layer))
         case "SOLID" | "TRACE":
             corners = tuple(_flat(place) for place in entity.wcs_vertices())
-            sketch.hatches.append(Stroke(corners, True, layer))
+            sketch.hatches.append(Polyline(corners, True, layer))
         case "HATCH":
             for path in entity.paths:
                 corners = tuple(_flat(place) for place in _corners(path))
                 if len(corners) > 2:
-                    sketch.hatches.append(Stroke(corners, True, layer))
+                    sketch.hatches.append(Polyline(corners, True, layer))
         case _:
             sketch.leave_out(_("entities {name}").format(name=kind[:40]))
 

@@ -23,7 +23,7 @@ from centrode.model.units import read_quantity
 from centrode.sketches.dxf_sketches import dxf_sketch
 from centrode.sketches.interpretation import read_sketch
 from centrode.sketches.linkage_files import linkage_drawing
-from centrode.sketches.parts import FRAME, Parts, less
+from centrode.sketches.parts import FRAME, DrawingParts, less
 from centrode.sketches.sketch import Sketch, extent
 from centrode.sketches.svg_sketches import svg_sketch
 
@@ -146,7 +146,7 @@ def _read_both_ways(
 class _Description:
     """Parts of a drawing as the tables of a description."""
 
-    def __init__(self, parts: Parts, sketch: Sketch, where: str, scale: float) -> None:
+    def __init__(self, parts: DrawingParts, sketch: Sketch, where: str, scale: float) -> None:
         self.parts, self.sketch, self.where = parts, sketch, where
         self.unit = sketch.unit * scale
         self.links = self._link_names()

@@ -19,8 +19,8 @@ from centrode.sketches.parts import (
     FRAME,
     RIGHT_ANGLE,
     Body,
+    DrawingParts,
     Guided,
-    Parts,
     along,
     distance_to_line,
     distance_to_segment,
@@ -29,7 +29,7 @@ from centrode.sketches.parts import (
     signed_distance,
     unit,
 )
-from centrode.sketches.sketch import Label, Place, Sketch, Stroke, extent, role_of
+from centrode.sketches.sketch import Label, Place, Polyline, Sketch, extent, role_of
 
 NEAR = 2e-3
 """Ends that are so near meet, as a part of the drawing's size."""
@@ -45,7 +45,7 @@ MOST_NODES = 300
 
 
 @dataclass(frozen=True)
-class Block:
+class SliderBlock:
     """A slider drawn as a rectangle: its middle, the unit vector along its longer sides, half of its breadth."""
 
     centre: Place
@@ -54,7 +54,9 @@ class Block:
     length: float
 
 
-def read_sketch(sketch: Sketch, where: str, near: float | None = None, *, straight_on: bool = False) -> Parts:
+def read_sketch(
+    sketch: Sketch, where: str, near: float | None = None, *, straight_on: bool = False
+) -> DrawingParts:
     """Bodies, hinges and guides of a drawing; notes on what was guessed are added to it.
 
     Parameters
@@ -75,7 +77,7 @@ class _Reader:
 
     def __init__(self, sketch: Sketch, where: str, near: float | None, straight_on: bool) -> None:
         self.sketch, self.where, self.straight_on = sketch, where, straight_on
-        self.strokes: dict[str, list[Stroke]] = {}
+        self.strokes: dict[str, list[Polyline]] = {}
         for stroke in sketch.strokes:
             self.strokes.setdefault(role_of(stroke.layer), []).append(stroke)
         layers = {one.layer for one in sketch.strokes}
@@ -96,7 +98,7 @@ class _Reader:
         self.near = NEAR * self.size if near is None else near
         self.rims: list[float] = []
         """Radius of the circle at a node; negative where there is none."""
-        self.parts = Parts()
+        self.parts = DrawingParts()
         self.gap = 0.0
         self.passed: dict[frozenset[Place], set[Place]] = {}
         """Ends of a line -> the circles behind which it passes."""
@@ -105,7 +107,7 @@ class _Reader:
         self.forks: set[Place] = set()
         """Hinges through which lines seem to go straight on."""
 
-    def read(self) -> Parts:
+    def read(self) -> DrawingParts:
         blocks = self._blocks()
         self._add_rings(blocks)
         blocks += self._slots()
@@ -145,7 +147,7 @@ class _Reader:
     def _has_rings(self) -> bool:
         return any(rim >= 0.0 for rim in self.rims)
 
-    def _add_rings(self, blocks: Sequence[Block]) -> None:
+    def _add_rings(self, blocks: Sequence[SliderBlock]) -> None:
         """Nodes at circles; concentric ones are one."""
         for ring in sorted(self.sketch.rings, key=lambda one: -one.radius):
             if role_of(ring.layer) in ("aside", "name"):
@@ -187,9 +189,9 @@ class _Reader:
 
     # Links.
 
-    def _blocks(self) -> list[Block]:
+    def _blocks(self) -> list[SliderBlock]:
         """Rectangles that are sliders; they are taken from the strokes."""
-        found: list[Block] = []
+        found: list[SliderBlock] = []
         for role in ("slider", "link", ""):
             kept = []
             for stroke in self.strokes.get(role, []):
@@ -205,7 +207,7 @@ class _Reader:
             self.sketch.leave_out(_("lines on a layer of sliders that are no rectangles"), left)
         return found
 
-    def _is_hinged_inside(self, block: Block) -> bool:
+    def _is_hinged_inside(self, block: SliderBlock) -> bool:
         """Whether a circle, or an end of a line, is in the middle of a rectangle."""
         within = max(self.near, 0.1 * block.length)
         ends = [place for stroke in self.sketch.strokes for place in stroke.points if not stroke.closed]
@@ -214,9 +216,9 @@ class _Reader:
             for place in (*(one.centre for one in self.sketch.rings), *ends)
         )
 
-    def _slots(self) -> list[Block]:
+    def _slots(self) -> list[SliderBlock]:
         """Outlines with two long sides and round ends become middle lines; circles between the ends slide there."""
-        found: list[Block] = []
+        found: list[SliderBlock] = []
         for role in ("link", "guide", ""):
             kept = []
             for stroke in self.strokes.get(role, []):
@@ -230,17 +232,17 @@ class _Reader:
                 hinged = [self._nearest(place, self.near) is not None for place in (start, end)]
                 low, high = (0.0 if one else half for one in hinged)
                 tips = (start[0] - low * x, start[1] - low * y), (end[0] + high * x, end[1] + high * y)
-                kept.append(Stroke(tips, False, stroke.layer))
+                kept.append(Polyline(tips, False, stroke.layer))
                 for place, rim in zip(self.parts.places, self.rims, strict=True):
                     between = min(math.dist(place, start), math.dist(place, end)) > self.near
                     if rim >= 0.0 and between and distance_to_segment(place, start, end) <= self.near:
-                        found.append(Block(place, (x, y), half, 2.0 * half))
+                        found.append(SliderBlock(place, (x, y), half, 2.0 * half))
             self.strokes[role] = kept
         if found:
             self.sketch.notes.append(_("circles inside outlines with round ends slide along these"))
         return found
 
-    def _bars(self, blocks: Sequence[Block]) -> list[Stroke]:
+    def _bars(self, blocks: Sequence[SliderBlock]) -> list[Polyline]:
         """Strokes that are links, those that a circle hides in part as one."""
         bars = [
             *self.strokes.get("link", []),
@@ -253,8 +255,8 @@ class _Reader:
         return bars
 
     def _hidden_pairs(
-        self, bars: Sequence[Stroke], blocks: Sequence[Block]
-    ) -> Iterator[tuple[Stroke, Stroke, Stroke]]:
+        self, bars: Sequence[Polyline], blocks: Sequence[SliderBlock]
+    ) -> Iterator[tuple[Polyline, Polyline, Polyline]]:
         """Two pieces of a line that passes behind a circle or a slider, or straight on through a hinge."""
         single = [bar for bar in bars if len(bar.points) == 2]
         for centre, on_edge, plain in self._covers(blocks):
@@ -273,14 +275,14 @@ class _Reader:
                 over = abs(signed_distance(centre, far, beyond)) > PASSING * self.size or (
                     plain and self._is_drawn_twice(single, one, other)
                 )
-                joined = Stroke((far, beyond), False, one.layer)
+                joined = Polyline((far, beyond), False, one.layer)
                 if over:
                     known = (self.passed.get(frozenset(bar.points), set()) for bar in (one, other))
                     self.passed[frozenset(joined.points)] = {centre}.union(*known)
                 if over or (plain and self._goes_on(ends, centre)):
                     yield one, other, joined
 
-    def _is_drawn_twice(self, single: Sequence[Stroke], *pair: Stroke) -> bool:
+    def _is_drawn_twice(self, single: Sequence[Polyline], *pair: Polyline) -> bool:
         """Whether one of two pieces lies on another line: that one ends there, and this one goes on."""
         shapes = [frozenset(bar.points) for bar in single]
         return any(shapes.count(frozenset(bar.points)) > 1 for bar in pair)
@@ -294,7 +296,7 @@ class _Reader:
             self.forks.add(centre)
         return held and self.straight_on
 
-    def _covers(self, blocks: Sequence[Block]) -> Iterator[tuple[Place, Callable[[Place], bool], bool]]:
+    def _covers(self, blocks: Sequence[SliderBlock]) -> Iterator[tuple[Place, Callable[[Place], bool], bool]]:
         """What hides lines: its middle, whether a place is on its edge, whether it is a hinge."""
         for centre, rim in zip(self.parts.places, self.rims, strict=True):
             if rim > 0.0:
@@ -305,12 +307,12 @@ class _Reader:
     def _is_on_rim(self, centre: Place, rim: float, place: Place) -> bool:
         return abs(math.dist(place, centre) - rim) <= self.near
 
-    def _is_on_edge(self, block: Block, place: Place) -> bool:
+    def _is_on_edge(self, block: SliderBlock, place: Place) -> bool:
         onwards, across = _in_axes(block, place)
         off = max(onwards - 0.5 * block.length, across - block.half)
         return abs(off) <= self.near
 
-    def _end_node(self, place: Place, before: Place, blocks: Sequence[Block]) -> int:
+    def _end_node(self, place: Place, before: Place, blocks: Sequence[SliderBlock]) -> int:
         """The node at the end of a line from a place before; of a slider, at whose side it may end, the middle."""
         for block in blocks:
             onwards, across = _in_axes(block, place)
@@ -321,7 +323,7 @@ class _Reader:
                     return node
         return self._node(place, before)
 
-    def _add_bodies(self, stroke: Stroke, blocks: Sequence[Block]) -> None:
+    def _add_bodies(self, stroke: Polyline, blocks: Sequence[SliderBlock]) -> None:
         """A closed polygon is one link; an open polyline is hinged where circles stand, or everywhere without any."""
         points = stroke.points
         first = self._end_node(points[0], points[1], blocks)
@@ -348,7 +350,7 @@ class _Reader:
         self.beside[id(body)] = {k for k, place in enumerate(self.parts.places) if place in passed}
         self.parts.bodies.append(body)
 
-    def _attach_inner_nodes(self, blocks: Sequence[Block]) -> None:
+    def _attach_inner_nodes(self, blocks: Sequence[SliderBlock]) -> None:
         """Nodes on the side of a link belong to it, unless a slider stands there that slides along it."""
         for body in self.parts.bodies[1:]:
             for k, place in enumerate(self.parts.places):
@@ -401,7 +403,7 @@ class _Reader:
 
     # The frame.
 
-    def _ground(self, blocks: Sequence[Block]) -> None:
+    def _ground(self, blocks: Sequence[SliderBlock]) -> None:
         """Nodes that signs of the frame touch are fixed; not those in a slider, which slides along the frame."""
         sliding = {self._nearest(one.centre, max(self.near, 0.2 * one.length)) for one in blocks}
         filled = [one for one in self.sketch.hatches if role_of(one.layer) in ("ground", "")]
@@ -443,7 +445,7 @@ class _Reader:
 
     # Guides.
 
-    def _guide(self, blocks: Sequence[Block]) -> None:
+    def _guide(self, blocks: Sequence[SliderBlock]) -> None:
         frame = set(self.parts.bodies[FRAME].nodes)
         rails = [side for stroke in self.strokes.get("guide", []) for side in _sides(stroke)]
         ground = [side for stroke in self.strokes.get("ground", []) for side in _sides(stroke)]
@@ -482,7 +484,7 @@ class _Reader:
         if left:
             self.sketch.leave_out(_("guides on which no point lies"), left)
 
-    def _slot(self, block: Block, node: int) -> int | None:
+    def _slot(self, block: SliderBlock, node: int) -> int | None:
         """The link along which a slider slides: one of its sides goes through the middle."""
         for number, body in enumerate(self.parts.bodies[1:], 1):
             if node in body.nodes:
@@ -592,12 +594,12 @@ def _point_name(label: Label) -> str | None:
 # Shapes of the signs.
 
 
-def _sides(stroke: Stroke) -> Iterator[tuple[Place, Place]]:
+def _sides(stroke: Polyline) -> Iterator[tuple[Place, Place]]:
     points = (*stroke.points, stroke.points[0]) if stroke.closed else stroke.points
     return iter(pairwise(points))
 
 
-def _touches(mark: Stroke, place: Place, within: float) -> bool:
+def _touches(mark: Polyline, place: Place, within: float) -> bool:
     """Whether a sign goes through the circle around a place, or a closed one holds it."""
     if any(distance_to_segment(place, *side) <= within for side in _sides(mark)):
         return True
@@ -611,7 +613,7 @@ def _touches(mark: Stroke, place: Place, within: float) -> bool:
     return inside
 
 
-def _block(stroke: Stroke) -> Block | None:
+def _block(stroke: Polyline) -> SliderBlock | None:
     """A stroke as a slider where it is a rectangle."""
     if not stroke.closed or len(stroke.points) != 4:
         return None
@@ -626,17 +628,17 @@ def _block(stroke: Stroke) -> Block | None:
             return None
     longer = 0 if lengths[0] >= lengths[1] else 1
     centre = (sum(x for x, _y in stroke.points) / 4.0, sum(y for _x, y in stroke.points) / 4.0)
-    return Block(centre, unit(ways[longer]), 0.5 * lengths[1 - longer], lengths[longer])
+    return SliderBlock(centre, unit(ways[longer]), 0.5 * lengths[1 - longer], lengths[longer])
 
 
-def _in_axes(block: Block, place: Place) -> Place:
+def _in_axes(block: SliderBlock, place: Place) -> Place:
     """How far a place is from the middle of a slider along it and across."""
     off = less(place, block.centre)
     (x, y) = block.direction
     return abs(off[0] * x + off[1] * y), abs(off[0] * y - off[1] * x)
 
 
-def _slot_axis(stroke: Stroke) -> tuple[Place, Place, float] | None:
+def _slot_axis(stroke: Polyline) -> tuple[Place, Place, float] | None:
     """Centres of the round ends of an outline, and half of its breadth; None of other outlines."""
     if not stroke.closed or len(stroke.points) < 8:
         return None

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import Problem, read_name
-from centrode.sketches.parts import FRAME, Body, Guided, Parts, less, unit
+from centrode.sketches.parts import FRAME, Body, DrawingParts, Guided, less, unit
 from centrode.sketches.sketch import LARGEST, Place, Sketch
 from centrode.sketches.xml_trees import Element, xml_tree
 
@@ -37,7 +37,7 @@ class _Connector:
     fastened: str
 
 
-def linkage_drawing(content: bytes, where: str) -> tuple[Parts, Sketch]:
+def linkage_drawing(content: bytes, where: str) -> tuple[DrawingParts, Sketch]:
     """Parts of a mechanism of Linkage, and a sketch without lines that holds unit, notes and what was left out.
 
     Raises InputError where the file is no such file, or holds what is not read: gears, curved slots.
@@ -53,11 +53,11 @@ class _LinkageReader:
     def __init__(self, root: Element, where: str) -> None:
         self.root, self.where = root, where
         self.sketch = Sketch(unit=UNIT)
-        self.parts = Parts()
+        self.parts = DrawingParts()
         self.connectors: dict[str, _Connector] = {}
         self.links: dict[str, Body] = {}
 
-    def read(self) -> tuple[Parts, Sketch]:
+    def read(self) -> tuple[DrawingParts, Sketch]:
         self._read_program()
         for element in self.root.children:
             if element.name == "connector" and self._is_mechanism(element):

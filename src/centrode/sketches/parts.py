@@ -36,7 +36,7 @@ class Guided:
 
 
 @dataclass
-class Parts:
+class DrawingParts:
     """Nodes, bodies (the frame first) and guides of a drawing.
 
     Attributes

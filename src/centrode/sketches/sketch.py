@@ -46,7 +46,7 @@ def role_of(layer: str) -> str:
 
 
 @dataclass(frozen=True)
-class Stroke:
+class Polyline:
     """Straight lines one after another; `closed` ones return to their first point, which is not repeated."""
 
     points: tuple[Place, ...]
@@ -55,7 +55,7 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Ring:
+class SketchCircle:
     """A circle."""
 
     centre: Place
@@ -85,10 +85,10 @@ class Sketch:
     unread : what was left out -> how often
     """
 
-    strokes: list[Stroke] = field(default_factory=list)
-    rings: list[Ring] = field(default_factory=list)
-    arcs: list[Ring] = field(default_factory=list)
-    hatches: list[Stroke] = field(default_factory=list)
+    strokes: list[Polyline] = field(default_factory=list)
+    rings: list[SketchCircle] = field(default_factory=list)
+    arcs: list[SketchCircle] = field(default_factory=list)
+    hatches: list[Polyline] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     unit: float = 1e-3
     notes: list[str] = field(default_factory=list)
@@ -111,7 +111,7 @@ class Sketch:
         if len(kept) < 2:
             self.leave_out(_("lines without length"))
             return
-        self.strokes.append(Stroke(tuple(kept), closed and len(kept) > 2, layer))
+        self.strokes.append(Polyline(tuple(kept), closed and len(kept) > 2, layer))
 
     def check(self, where: str) -> None:
         """Raise InputError where the drawing is too large, or holds numbers that are none."""

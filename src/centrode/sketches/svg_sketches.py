@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.sketches.sketch import Label, Place, Ring, Sketch, Stroke, role_of
+from centrode.sketches.sketch import Label, Place, Polyline, Sketch, SketchCircle, role_of
 from centrode.sketches.xml_trees import Element, xml_tree
 
 Matrix: TypeAlias = tuple[float, float, float, float, float, float]
@@ -112,7 +112,7 @@ def _read_element(element: Element, matrix: Matrix, layer: str, sketch: Sketch, 
         for child in element.children:
             _read_element(child, matrix, layer, sketch, where)
         return
-    number = _Numbers(element, where)
+    number = _SvgNumbers(element, where)
     if name == "line":
         ends = [(number("x1"), number("y1")), (number("x2"), number("y2"))]
         _add(sketch, element, [_move(matrix, end) for end in ends], layer, closed=False)
@@ -143,7 +143,7 @@ def _read_element(element: Element, matrix: Matrix, layer: str, sketch: Sketch, 
         sketch.leave_out(_("elements {name}").format(name=name[:40]))
 
 
-class _Numbers:
+class _SvgNumbers:
     """Numbers of an element's attributes; absent ones are zero."""
 
     def __init__(self, element: Element, where: str) -> None:
@@ -187,7 +187,7 @@ def _layer(element: Element, outer: str) -> str:
 def _add(sketch: Sketch, element: Element, places: Sequence[Place], layer: str, *, closed: bool) -> None:
     fill = element.get("fill") or _style(element, "fill")
     if fill.startswith("url(") and len(places) > 2:
-        sketch.hatches.append(Stroke(tuple(places), True, layer))
+        sketch.hatches.append(Polyline(tuple(places), True, layer))
         return
     if len(places) < 2:
         sketch.leave_out(_("lines without length"))
@@ -205,7 +205,7 @@ def _add_circle(
     if not (even and keeps):
         sketch.leave_out(_("ellipses"))
         return
-    sketch.rings.append(Ring(_move(matrix, centre), abs(radii[0]) * scale, layer))
+    sketch.rings.append(SketchCircle(_move(matrix, centre), abs(radii[0]) * scale, layer))
 
 
 def _path_pieces(text: str) -> list[tuple[list[Place], bool]] | None:

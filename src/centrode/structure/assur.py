@@ -17,6 +17,7 @@ from centrode.structure.groups import (
     Aim,
     CylinderCircle,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Meshed,
@@ -27,7 +28,6 @@ from centrode.structure.groups import (
     Rolled,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     Train,
     TurnedLink,
@@ -228,7 +228,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
 def _members_of_locus(mechanism: Mechanism, locus: Locus, names: Sequence[str]) -> Iterator[str]:
     """A slider or a cylinder that draws a locus; links, which are in `names`, are counted already."""
     match locus:
-        case Rail(guide=name) | Slot(guide=name) | Stop(guide=name):
+        case Rail(guide=name) | Slot(guide=name) | GuideStop(guide=name):
             guide = mechanism.guide(name)
             # a guided link that belongs to the group is there already
             if is_bare(guide) or guide.link not in names:

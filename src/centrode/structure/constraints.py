@@ -230,7 +230,7 @@ class _OnTrack:
 
 
 @dataclass(frozen=True)
-class Contact(_OnTrack):
+class TrackContact(_OnTrack):
     """A wheel touches its track: its centre keeps its distance from the line or from the circle's centre."""
 
     angular = False
@@ -361,7 +361,9 @@ def angle_links(constraint: Meshing) -> tuple[str, ...]:
     return (constraint.link,)
 
 
-def contact_point(constraint: Contact | NoSlip, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+def contact_point(
+    constraint: TrackContact | NoSlip, m: Namespace, numbers: Dimensions, at: Positions
+) -> Vector:
     """Where a wheel touches its track: the instant centre of the wheel against the body it rolls on."""
     track = numbers.gearing.track[constraint.rolling]
     heading, offset = constraint.heading(numbers, at), constraint.offset(numbers, at)
@@ -581,7 +583,7 @@ def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:
         GearRatio(gear.id, gear.links[0], gear.links[1], gear.carrier) for gear in mechanism.gears
     ]
     for wheel in mechanism.rolling:
-        constraints += [kind(wheel.id, wheel.link, wheel.centre, wheel.on) for kind in (NoSlip, Contact)]
+        constraints += [kind(wheel.id, wheel.link, wheel.centre, wheel.on) for kind in (NoSlip, TrackContact)]
     return tuple(constraints)
 
 

@@ -7,9 +7,10 @@ points, links by two points, cranks and parallel links are solved on the way.
 Kinds are words of English, marked for the catalogues: data hold them as they are, readers see them in their language
 (Russian and Ukrainian books write ВВП for RRP).
 
-Every group answers for itself: `kind` and whether it is `signed`, the `links` whose pose and the `points` whose place
-it gives, whether a drive acts inside it (`is_input`), and a `sentence` that says in the language of the reader what is
-found and from what. What tells groups or loci apart ends in `assert_never`, so the type checker names every place that
+Every group answers for itself: `kind` and whether its equation has two roots (`is_signed`), the `links` whose pose and
+the `points` whose place it gives, whether a drive acts inside it (`is_input`), and a `sentence` that says in the
+language of the reader what is found and from what. What tells groups or loci apart ends in `assert_never`, so the type
+checker names every place that
 a new one concerns.
 """
 
@@ -20,7 +21,7 @@ from typing import TypeAlias, assert_never
 
 from centrode.locale import _, mark
 from centrode.model.reading import body_word
-from centrode.structure.constraints import Constraint, Contact, GearRatio, NoSlip
+from centrode.structure.constraints import Constraint, GearRatio, NoSlip, TrackContact
 
 # What gears and rolling wheels add to the groups of a plan: angles that follow, loci, trains.
 #
@@ -50,7 +51,7 @@ class Touch:
     """Locus: where a wheel's centre is at its track; `carried` if the unknown carries the track past a known wheel."""
 
     point: str
-    contact: Contact
+    contact: TrackContact
     carried: bool
     letter: str
     is_input = False
@@ -115,7 +116,7 @@ class Train:
     places: tuple[tuple[str, str], ...]
     brought: tuple[tuple[str, str], ...]
     kind = mark("gear train")
-    signed = False
+    is_signed = False
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -162,7 +163,7 @@ class RigidPoint:
     point: str
     link: str
     kind = "rigid point"
-    signed = False
+    is_signed = False
     links = ()
     is_input = False
 
@@ -185,7 +186,7 @@ class TwoPointLink:
     first: str
     second: str
     kind = mark("link by two points")
-    signed = False
+    is_signed = False
     points = ()
     is_input = False
 
@@ -223,7 +224,7 @@ class TurnedLink:
     pivot: str
     turning: Turning | Following
     points = ()
-    signed = False
+    is_signed = False
 
     @property
     def kind(self) -> str:
@@ -277,9 +278,9 @@ class Aim:
     target: str
     block: str | None = None
     sliding: str | None = None
-    contact: Contact | None = None
+    contact: TrackContact | None = None
     kind = mark("RPR")
-    signed = True
+    is_signed = True
     is_input = False
 
     @property
@@ -353,7 +354,7 @@ class Slot:
 
 
 @dataclass(frozen=True)
-class Stop:
+class GuideStop:
     """Locus: the line square to a guide at the displacement its drive gives."""
 
     point: str
@@ -385,7 +386,7 @@ class CylinderCircle:
         return _("the circle about {point} as large as the cylinder is long").format(point=self.centre)
 
 
-Locus: TypeAlias = Rod | CylinderCircle | Rail | Slot | Stop | Touch | Rolloff
+Locus: TypeAlias = Rod | CylinderCircle | Rail | Slot | GuideStop | Touch | Rolloff
 
 
 @dataclass(frozen=True)
@@ -423,7 +424,7 @@ class Meet:
     # in the plane a circle meets anything in two places, two lines in one; on the sphere curves of guides are
     # circles too
     @property
-    def signed(self) -> bool:
+    def is_signed(self) -> bool:
         if self.circles or self.crosses_once:
             return bool(self.circles)
         # a stop is a single place already: nothing has to be chosen
@@ -470,7 +471,7 @@ class Newton:
     links: tuple[str, ...]
     equations: tuple[tuple[Constraint, int], ...]
     kind = mark("higher class")
-    signed = False
+    is_signed = False
     is_input = False
 
     @property

@@ -15,7 +15,6 @@ from centrode.structure.constraints import (
     FRAME,
     AngleDrive,
     Constraint,
-    Contact,
     DisplacementDrive,
     DistanceDrive,
     Entity,
@@ -24,6 +23,7 @@ from centrode.structure.constraints import (
     NoTurning,
     PointInLink,
     PointOnGuide,
+    TrackContact,
     constraints_of,
     is_drive,
     unknowns_of,
@@ -38,6 +38,7 @@ from centrode.structure.groups import (
     CylinderCircle,
     Following,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Meshed,
@@ -48,7 +49,6 @@ from centrode.structure.groups import (
     Rolled,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     Train,
     TurnedLink,
@@ -108,7 +108,7 @@ def relation_to_known(group: GroupToSolve, constraint: Constraint, link: str) ->
 
 def wheel_locus(group: GroupToSolve, constraint: Constraint, carriage: str | None) -> Touch | Rolloff | None:
     """The locus that a contact or a rolling contact is for the unknown vector of a group; None if it is none."""
-    if not isinstance(constraint, (Contact, NoSlip)):
+    if not isinstance(constraint, (TrackContact, NoSlip)):
         return None
     straight = _description(group.mechanism, constraint.rolling).along.radius is None
     centre_known = group.knows_point(constraint.centre)
@@ -116,7 +116,7 @@ def wheel_locus(group: GroupToSolve, constraint: Constraint, carriage: str | Non
     # either the unknown carries the track past a known wheel, or the wheel is unknown at a known track
     if carried != centre_known or not (carried or group.knows_link(constraint.on)):
         return None
-    if isinstance(constraint, Contact):
+    if isinstance(constraint, TrackContact):
         return Touch(constraint.centre, constraint, carried, "P" if straight else "R")
     turns_known = constraint.link == carriage or group.knows_link(constraint.link)
     # on a line the wheel's turn gives the place along it; on a circle the bearing, which is an angle
@@ -361,7 +361,7 @@ def _single_link(group: Unsolved) -> Group | None:
     for c in group.constraints:
         if isinstance(c, PointOnGuide) and c.on == link:
             return Aim(link, ends[0], c.guide, c.point)
-        if isinstance(c, Contact) and c.on == link:
+        if isinstance(c, TrackContact) and c.on == link:
             touch = wheel_locus(group, c, link)
             # a link resting on a straight track of its own is aimed at the wheel; a round one has no such
             # line
@@ -461,7 +461,9 @@ def _line(group: Unsolved, constraint: Constraint, carriage: str | None) -> Locu
         return Rail(constraint.point, constraint.guide, constraint.on) if known else None
     if isinstance(constraint, DisplacementDrive):
         known = group.knows_link(constraint.on) and not group.knows_point(constraint.point)
-        return Stop(constraint.point, constraint.guide, constraint.on, constraint.drive) if known else None
+        return (
+            GuideStop(constraint.point, constraint.guide, constraint.on, constraint.drive) if known else None
+        )
     return None
 
 
@@ -489,7 +491,7 @@ class Structure:
     generic_mobility: int
 
     @cached_property
-    def counted(self) -> tuple[tuple[str, ...], ...]:
+    def counted_links(self) -> tuple[tuple[str, ...], ...]:
         """Links of each group whose angles matter with their turns: those of gears and rolling wheels."""
         wanted: set[str] = set()
         for constraint in self.constraints:
@@ -605,7 +607,7 @@ def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constrai
         owner = owners[row]
         if is_drive(owner):
             return -len(mechanism.points) - 1
-        if isinstance(owner, Contact):
+        if isinstance(owner, TrackContact):
             return 1
         return -len(mechanism.links[owner.link].coordinates) if isinstance(owner, PointInLink) else 0
 

@@ -22,7 +22,7 @@ from centrode.geometry.space import Row
 from centrode.locale import _
 from centrode.model.mechanism import Guide, Mechanism, Rolling
 from centrode.numerics.arrays import ARRAYS
-from centrode.structure.constraints import FRAME, Constraint, Contact, Entity, Positions
+from centrode.structure.constraints import FRAME, Constraint, Entity, Positions, TrackContact
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Gearing, Round, Straight, Track
 
@@ -317,7 +317,7 @@ def count(mechanism: Mechanism, redundant: Collection[Constraint] = ()) -> Count
     for ends in cylinders:
         members.update(ends)
     hinges = sum(number - 1 for number in members.values())
-    kept_at_track = {c.rolling for c in redundant if isinstance(c, Contact)}
+    kept_at_track = {c.rolling for c in redundant if isinstance(c, TrackContact)}
     # where an arm or a guide keeps the distance, the contact is redundant and a pair of another kind
     rolling = sum(wheel.id not in kept_at_track for wheel in mechanism.rolling)
     links = len(mechanism.links) + len(blocks) + 2 * len(cylinders)

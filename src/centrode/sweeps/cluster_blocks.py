@@ -21,7 +21,7 @@ from centrode.model.files import parse_mechanism
 from centrode.numerics.executors import lacking_features
 from centrode.sweeps.clusters import ClusterSource, libraries, open_cluster
 from centrode.sweeps.designs import Crossed, Design, Listed
-from centrode.sweeps.drawn_designs import Drawn
+from centrode.sweeps.drawn_designs import DrawnDesigns
 from centrode.sweeps.executors import bare
 from centrode.sweeps.storage import PROGRESS, Storage, place_refusals, storage_of, zarr_array
 from centrode.sweeps.store import Blocks, BlockWriter, Store, Tally
@@ -81,14 +81,14 @@ def _plain(value: Any) -> Any:
 
 
 def _design_text(design: Design) -> dict[str, Any]:
-    if isinstance(design, Drawn):
+    if isinstance(design, DrawnDesigns):
         return {"drawn": design.text}
     return {"crossed" if isinstance(design, Crossed) else "listed": list(design.paths)}
 
 
 def _design_of(told: Mapping[str, Any], storage: Storage) -> Design:
     if "drawn" in told:
-        return Drawn.of_text(told["drawn"])
+        return DrawnDesigns.of_text(told["drawn"])
     kind = "crossed" if "crossed" in told else "listed"
     values = {path: np.asarray(zarr_array(storage, path), np.float64) for path in told[kind]}
     return Crossed(values) if kind == "crossed" else Listed(values)

@@ -26,7 +26,7 @@ import numpy as np
 from centrode.errors import CentrodeError, ClusterWarning, InputError
 from centrode.locale import _
 from centrode.model.reading import value_text
-from centrode.optional_packages import admitted, how_to_install
+from centrode.optional_packages import admitted_module, how_to_install
 from centrode.version import __version__
 
 ClusterSource: TypeAlias = Any
@@ -66,8 +66,8 @@ OF_CONNECTION = ("ClosedClientError", "CancelledError", "FutureCancelledError", 
 """Failures of a client whose scheduler is gone."""
 
 # heavy, an extra
-_distributed = functools.partial(admitted, "distributed", "dask")
-_dask = functools.partial(admitted, "dask", "dask")
+_distributed = functools.partial(admitted_module, "distributed", "dask")
+_dask = functools.partial(admitted_module, "dask", "dask")
 _resource_tracker = functools.partial(importlib.import_module, "multiprocessing.resource_tracker")
 
 

@@ -25,7 +25,7 @@ from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, read_quantity
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
-from centrode.sweeps.drawn_designs import Drawn
+from centrode.sweeps.drawn_designs import DrawnDesigns
 from centrode.sweeps.kept_plans import KeptValues
 
 # What a sweep may take of memory and ask for at most; named here, explained in docs/sweeps.md.
@@ -379,7 +379,7 @@ def draw_sample(mechanism: Mechanism, asked: Sample) -> Design:
         raise InputError("sample", _("the seed must be a whole number from 0"))
     bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
     if count * len(bounds) > DRAWN:
-        return Drawn(bounds, count, asked.method, seed)
+        return DrawnDesigns(bounds, count, asked.method, seed)
     unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
     columns = zip(bounds.items(), unit.T, strict=True)
     # the last value may pass the end by rounding
@@ -459,7 +459,7 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
 
 def path_digests(design: Design) -> dict[str, str]:
     """The values by which two designs are distinguished: path -> a digest of its values along the design."""
-    if isinstance(design, Drawn):
+    if isinstance(design, DrawnDesigns):
         return {path: design.text for path in design.paths}
     # a digest of the bytes: two designs are the same if every bit is
     told = {}

@@ -34,7 +34,7 @@ _qmc = functools.partial(importlib.import_module, "scipy.stats.qmc")
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnDesigns:
     """Mechanisms drawn from ranges, made block by block.
 
     Attributes
@@ -76,7 +76,7 @@ class Drawn:
         return json.dumps({key: told[key] for key in sorted(told)})
 
     @classmethod
-    def of_text(cls, text: str) -> Drawn:
+    def of_text(cls, text: str) -> DrawnDesigns:
         """The design of a text."""
         told = json.loads(text)
         ranges = {str(path): (float(low), float(high)) for path, (low, high) in told["ranges"].items()}
@@ -186,10 +186,10 @@ def _network(numbers: Places, half: int, key: Places) -> Places:
 # Values as an array that is made when it is read.
 
 
-class _Values(BackendArray):
+class _DesignValues(BackendArray):
     """The values of one path; what is read of them is made then."""
 
-    def __init__(self, design: Drawn, path: str) -> None:
+    def __init__(self, design: DrawnDesigns, path: str) -> None:
         self.design = design
         self.path = path
         self.shape = design.shape
@@ -211,4 +211,4 @@ class _Values(BackendArray):
 
 def lazy_values(design: Any, path: str) -> Any:
     """The values of a path of a drawn design, for a variable of xarray."""
-    return indexing.LazilyIndexedArray(_Values(design, path))
+    return indexing.LazilyIndexedArray(_DesignValues(design, path))

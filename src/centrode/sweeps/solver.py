@@ -19,7 +19,7 @@ from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, quantities_
 from centrode.kinematics.machine_code.frame_plan import DirectPlan, FramePlan, FreeMechanism, traced_plan
 from centrode.kinematics.machine_code.trace import Untraceable, trace_motion
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.plan_evaluation import Event, layout_of
+from centrode.kinematics.plan_evaluation import RadicandZero, layout_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, check_size, grid_of, solve
 from centrode.locale import _
@@ -37,7 +37,7 @@ Values: TypeAlias = Sequence[float | str] | Mapping[str, float | str] | Array
 
 
 @dataclass(frozen=True)
-class Frame:
+class MotionFrame:
     """The motion of one mechanism at the samples of a solver, as plain arrays that cannot be written to.
 
     Arrays of a clear mechanism are views of the solver's memory, which a later `move` uses again once nothing refers to
@@ -65,7 +65,7 @@ class Frame:
     values: tuple[float, ...]
     status: npt.NDArray[np.int8]
     residual: Array
-    events: tuple[Event, ...]
+    events: tuple[RadicandZero, ...]
     arrays: Mapping[str, Array]
     outputs: Mapping[str, Any]
     is_clear: bool
@@ -93,11 +93,11 @@ class Frame:
         """Angles of links (samples, links) [rad]; on the sphere those of joints."""
         return self.arrays["angle" if "angle" in self.arrays else "joint_angle"]
 
-    def copy(self) -> Frame:
+    def copy(self) -> MotionFrame:
         """The same with arrays of its own."""
         arrays = {name: _read_only(array.copy()) for name, array in self.arrays.items()}
         outputs = {name: np.copy(x) if isinstance(x, np.ndarray) else x for name, x in self.outputs.items()}
-        return Frame(
+        return MotionFrame(
             self.solver, self.values, _read_only(self.status.copy()), arrays.get(RESIDUAL, self.residual.copy()),
             self.events, arrays, outputs, self.is_clear,
         )  # fmt: skip
@@ -119,7 +119,7 @@ class _KeptFrame:
 
     def __init__(self, solver: Solver, memory: Any, status: npt.NDArray[np.int8]) -> None:
         self.memory = memory
-        self.frame = Frame(
+        self.frame = MotionFrame(
             solver, solver.own, status, memory.quantities[RESIDUAL], (), memory.quantities, {}, True
         )
         owners = {id(x.base): x.base for x in self.frame.arrays.values() if x.base is not None}
@@ -142,9 +142,9 @@ MEMORIES = 4
 _FLOATS = frozenset({float})
 
 
-def _frame_like(frame: Frame, values: tuple[float, ...], outputs: Mapping[str, Any]) -> Frame:
+def _frame_like(frame: MotionFrame, values: tuple[float, ...], outputs: Mapping[str, Any]) -> MotionFrame:
     """A frame of the same arrays: to make one field by field takes as long as a short kernel."""
-    made = object.__new__(Frame)
+    made = object.__new__(MotionFrame)
     made.__dict__.update(frame.__dict__, values=values, outputs=outputs)
     return made
 
@@ -197,7 +197,7 @@ class Solver:
         """Make the plan, which is kept on disk for other processes."""
         outputs = self._outputs
         try:
-            varied = self._free.varied(self.own)
+            varied = self._free.varied_numbers(self.own)
             traced = trace_motion(self._free.ready, self._span, varied, differentiable=outputs is not None)
             self._plan = traced_plan(self._free, varied, traced, executor)
         except Untraceable as why:
@@ -237,7 +237,7 @@ class Solver:
         """Value of the drive at the samples [rad or m]; times [s] with a law or several drives."""
         return self._span.parameter
 
-    def move(self, values: Values) -> Frame:
+    def move(self, values: Values) -> MotionFrame:
         """The motion with these numbers.
 
         Parameters
@@ -401,20 +401,20 @@ class Solver:
     def _solve(self, given: tuple[float, ...]) -> Solved:
         return solve(self._free.ready, self._span, self._free.dimensions(given), 1)
 
-    def _frame_of(self, given: tuple[float, ...], solved: Solved) -> Frame:
+    def _frame_of(self, given: tuple[float, ...], solved: Solved) -> MotionFrame:
         arrays = {name: _read_only(np.asarray(values)[0]) for name, values in quantities_of(solved).items()}
         arrays[RESIDUAL] = residual = _read_only(solved.residual[0])
         outputs = {} if self._outputs is None else self._outputs.of(solved, given)
         status = _read_only(solved.status[0])
-        return Frame(self, given, status, residual, tuple(solved.events()), arrays, outputs, False)
+        return MotionFrame(self, given, status, residual, tuple(solved.events()), arrays, outputs, False)
 
-    def _without_values(self, given: tuple[float, ...]) -> Frame:
+    def _without_values(self, given: tuple[float, ...]) -> MotionFrame:
         """A frame of numbers that no description can have: open everywhere."""
         blank = self._frame_of(self.own, self._solve(self.own))
         arrays = {name: _read_only(np.full_like(array, np.nan)) for name, array in blank.arrays.items()}
         status = _read_only(np.full(self.samples, Status.OPEN, dtype=np.int8))
         outputs = {} if self._outputs is None else self._outputs.without_values()
-        return Frame(self, given, status, arrays[RESIDUAL], (), arrays, outputs, False)
+        return MotionFrame(self, given, status, arrays[RESIDUAL], (), arrays, outputs, False)
 
     def _outputs_of(self, given: tuple[float, ...]) -> Mapping[str, Any]:
         asked = self._outputs

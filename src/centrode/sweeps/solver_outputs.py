@@ -18,7 +18,7 @@ from centrode.dynamics.kinetostatics.reaction_expressions import LARGEST_GAIN, R
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.errors import InputError, Status
-from centrode.kinematics.machine_code.event_screening import SAFE
+from centrode.kinematics.machine_code.event_free_mechanisms import SAFE
 from centrode.kinematics.machine_code.frame_kernels import RESIDUAL, SLACK_AT_SAMPLES, Known, closes
 from centrode.kinematics.machine_code.frame_plan import FramePlan, FreeMechanism, SampleScan, screening_of
 from centrode.kinematics.machine_code.trace import Traced, Untraceable
@@ -305,7 +305,7 @@ class TracedOutputs:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _OutputPass:
     """Numbers of one pass over the samples: rows of its room."""
 
     scan: SampleScan
@@ -469,14 +469,14 @@ class LiveOutputs:
             raise InputError("gradient", what, _("omit gradient")) from None
 
     @cached_property
-    def _parts(self) -> list[_Part]:
+    def _parts(self) -> list[_OutputPass]:
         return list(self._passes(slopes=False))
 
     @cached_property
-    def _parts_with_slopes(self) -> list[_Part]:
+    def _parts_with_slopes(self) -> list[_OutputPass]:
         return list(self._passes(slopes=True))
 
-    def _passes(self, slopes: bool) -> Iterator[_Part]:
+    def _passes(self, slopes: bool) -> Iterator[_OutputPass]:
         """The passes over the samples, each with what it computes; the first also judges."""
         screening = screening_of(self.free, self.traced, self.varied, "arrays")
         expressed = self.expressed
@@ -490,13 +490,13 @@ class LiveOutputs:
                     nodes[GAIN,] = self.gain
             nodes |= each.nodes
             scan = self.plan.samples_of({str(k): node for k, node in enumerate(nodes.values())})
-            yield _Part(scan, {key: k for k, key in enumerate(nodes)}, each.folds)
+            yield _OutputPass(scan, {key: k for k, key in enumerate(nodes)}, each.folds)
 
     def _run(
-        self, parts: Sequence[_Part], given: Given, memory: Any
+        self, parts: Sequence[_OutputPass], given: Given, memory: Any
     ) -> tuple[Known, dict[str, Array], dict[str, Array]] | None:
         """Variables with the results of folds, numbers at samples, their derivatives; None where it is not clear."""
-        known = self.plan.judged(given, memory)
+        known = self.plan.judged_variables(given, memory)
         if known is None:
             return None
         samples, free = len(self.free.span.parameter), len(self.free.paths)

@@ -33,7 +33,7 @@ from centrode.optional_packages import how_to_install
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import MECHANISM, Design, path_digests
-from centrode.sweeps.drawn_designs import Drawn, lazy_values
+from centrode.sweeps.drawn_designs import DrawnDesigns, lazy_values
 from centrode.sweeps.executors import bare
 from centrode.sweeps.outputs import PATH, SAMPLE, SweepColumn, SweepOutputs
 from centrode.sweeps.result_columns import StreamedColumns, columns_for
@@ -349,7 +349,7 @@ def frame_of(
 ) -> SweepFrame:
     """The frame of a sweep."""
     attributes = {"executor": executor}
-    if isinstance(design, Drawn):
+    if isinstance(design, DrawnDesigns):
         # values of a drawn design are in no store: this says what they are
         attributes["drawn"] = design.text
     empty = labels.with_design(design, units, asked, attributes)

@@ -15,7 +15,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.machine_code.path_continuation import Walk, Walking, Way, way_of
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from centrode.synthesis.least_squares import Lanes, Problem, is_ordered, least_squares, ordered_fit
+from centrode.synthesis.least_squares import FitLanes, FitProblem, is_ordered, least_squares, ordered_fit
 
 SEMIFINALISTS = 96
 FINALISTS = 40
@@ -18,13 +18,13 @@ Progress = Callable[[float], None]
 
 
 def fit_lanes(
-    problem: Problem,
-    candidates: Lanes,
+    problem: FitProblem,
+    candidates: FitLanes,
     closed: bool,
     ordered: bool,
     progress: Progress = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
-) -> Lanes:
+) -> FitLanes:
     """Candidates brought to their minima, the best of them to the end, in the order of what they miss.
 
     Those that break a hinge by more than rounding stand behind all others.
@@ -52,7 +52,7 @@ def fit_lanes(
     return _distinct(lanes, LAST)
 
 
-def _distinct(lanes: Lanes, count: int) -> Lanes:
+def _distinct(lanes: FitLanes, count: int) -> FitLanes:
     """The best lanes, without those that miss the targets by the same and have the same lengths."""
     chosen: list[int] = []
     for k in _best(lanes).tolist():
@@ -70,7 +70,7 @@ def _distinct(lanes: Lanes, count: int) -> Lanes:
     return lanes.take(np.array(chosen, dtype=np.int64))
 
 
-def _best(lanes: Lanes) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
+def _best(lanes: FitLanes) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
     broken = lanes.violation > 1e-3
     order: np.ndarray[tuple[int, ...], np.dtype[np.int64]] = np.lexsort((lanes.errors, broken))
     return order

@@ -23,7 +23,7 @@ from centrode.model.files import value_at, with_values
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import value_text
 from centrode.model.units import read_quantity
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import kind_of, unit_of
 from centrode.sweeps.solver import Solver, solver
 from centrode.synthesis.measures import Array, Measure, measure_of
@@ -118,11 +118,11 @@ class Improvement(PrintsSummary):
     complete: bool = True
 
 
-class _Open(Exception):
+class _OpenMotion(Exception):
     """The mechanism does not assemble all along its motion."""
 
 
-class _Search:
+class _ImprovementSearch:
     """Measures of a solver in units in which each range is one."""
 
     def __init__(self, moved: Solver, measures: Sequence[Measure], low: Array, high: Array) -> None:
@@ -146,7 +146,7 @@ class _Search:
         numbers = np.array([value for value, _slope in results])
         by = np.stack([slope for _value, slope in results]) * self.width
         if not (np.isfinite(numbers).all() and np.isfinite(by).all()):
-            raise _Open
+            raise _OpenMotion
         self._last = key, numbers, by
         return numbers, by
 
@@ -222,11 +222,11 @@ def improve(
         if not error.where.startswith("outputs measure_") or not which.isdigit():
             raise
         raise InputError(wheres[int(which)], error.what, error.repair) from None
-    search = _Search(moved, measures, low, high)
+    search = _ImprovementSearch(moved, measures, low, high)
     own = np.array(moved.own)
     try:
         before, _slopes = search.values_at((own - low) / (high - low))
-    except _Open:
+    except _OpenMotion:
         what = _("the mechanism does not move through its whole range, or a number has no value there")
         raise InputError("mechanism", what, _("choose dimensions with which it moves")) from None
     start = np.clip((own - low) / (high - low), 0.0, 1.0)
@@ -331,7 +331,7 @@ def _is_better(sign: float, limits: Sequence[tuple[float, float]], old: Array, n
 
 
 def _descend(
-    search: _Search,
+    search: _ImprovementSearch,
     place: Array,
     sign: float,
     limits: Sequence[tuple[float, float]],
@@ -371,7 +371,7 @@ def _descend(
             )
             proposed = np.clip(solved.x, box[:, 0], box[:, 1])
             numbers = search.values_at(proposed)[0]
-        except _Open:
+        except _OpenMotion:
             proposed = None
         if proposed is not None and _is_better(sign, limits, best, numbers):
             small = abs(numbers[0] - best[0]) < 1e-10 * scale and _violation(limits, best) <= KEPT

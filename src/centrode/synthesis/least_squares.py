@@ -51,7 +51,7 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class Kernel:
+class FitKernel:
     """How linkages of a space miss targets; both functions take the targets, variables, sides and crank angles.
 
     Attributes
@@ -93,11 +93,11 @@ def _plane_slopes(targets: Targets, variables: Array, side: Array, angles: Array
     return by, turn
 
 
-PLANE = Kernel(_plane_residuals, _plane_slopes)
+PLANE = FitKernel(_plane_residuals, _plane_slopes)
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class FitProblem:
     """Targets, what may vary, and what has to hold.
 
     Attributes
@@ -115,11 +115,11 @@ class Problem:
     high: Array
     hinges: Hinges | None = None
     weight: float = 30.0
-    kernel: Kernel = PLANE
+    kernel: FitKernel = PLANE
 
 
 @dataclass(eq=False)
-class Lanes:
+class FitLanes:
     """Linkages on their way.
 
     Attributes
@@ -141,9 +141,9 @@ class Lanes:
     errors: Array = field(default_factory=lambda: np.empty(0))
     violation: Array = field(default_factory=lambda: np.empty(0))
 
-    def take(self, which: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Lanes:
+    def take(self, which: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> FitLanes:
         """Some of the lanes."""
-        return Lanes(
+        return FitLanes(
             self.variables[which],
             self.side[which],
             self.crank[which],
@@ -153,18 +153,18 @@ class Lanes:
             self.violation[which] if len(self.violation) else self.violation,
         )
 
-    def put(self, which: np.ndarray[tuple[int, ...], np.dtype[np.int64]], others: Lanes) -> None:
+    def put(self, which: np.ndarray[tuple[int, ...], np.dtype[np.int64]], others: FitLanes) -> None:
         """Fitted lanes in place of some of these."""
         if self.first is None:
             self.first = np.tile(np.arange(self.crank.shape[1]), (len(self.crank), 1))
         for name in ("variables", "crank", "first", "errors", "violation"):
             getattr(self, name)[which] = getattr(others, name)
 
-    def join(self, other: Lanes) -> Lanes:
+    def join(self, other: FitLanes) -> FitLanes:
         """These and others; both have been fitted."""
         own = np.broadcast_to(np.arange(self.crank.shape[1]), self.crank.shape)
         others = np.broadcast_to(np.arange(self.crank.shape[1]), other.crank.shape)
-        return Lanes(
+        return FitLanes(
             np.concatenate([self.variables, other.variables]),
             np.concatenate([self.side, other.side]),
             np.concatenate([self.crank, other.crank]),
@@ -177,27 +177,27 @@ class Lanes:
         )
 
 
-def _angles(problem: Problem, variables: Array, crank: Array) -> Array:
+def _angles(problem: FitProblem, variables: Array, crank: Array) -> Array:
     return crank + variables[:, PHASE, None]
 
 
-def _residuals(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Booleans]:
+def _residuals(problem: FitProblem, variables: Array, side: Array, crank: Array) -> tuple[Array, Booleans]:
     """(lanes, n, rows) of the targets, and (lanes,) bool whether the linkage closes at all of them."""
     return problem.kernel.residuals(problem.targets, variables, side, _angles(problem, variables, crank))
 
 
-def _slopes(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array]:
+def _slopes(problem: FitProblem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array]:
     """Derivatives (lanes, n, rows, 11) by the variables and (lanes, n, rows) by the crank's angle."""
     return problem.kernel.slopes(problem.targets, variables, side, _angles(problem, variables, crank))
 
 
-def _hinges(problem: Problem, variables: Array, side: Array) -> Array:
+def _hinges(problem: FitProblem, variables: Array, side: Array) -> Array:
     if problem.hinges is None:
         return np.zeros((len(variables), 0))
     return np.maximum(problem.hinges(variables, side), 0.0)
 
 
-def _hinge_slopes(problem: Problem, variables: Array, side: Array, values: Array) -> Array:
+def _hinge_slopes(problem: FitProblem, variables: Array, side: Array, values: Array) -> Array:
     """(lanes, m, 11); hinges are smooth where they are not zero, and their slopes need no more than half the digits."""
     slopes = np.zeros((*values.shape, VARIABLES))
     active = np.flatnonzero((values > 0).any(axis=1))
@@ -215,12 +215,12 @@ def _hinge_slopes(problem: Problem, variables: Array, side: Array, values: Array
 
 
 def least_squares(
-    problem: Problem,
-    start: Lanes,
+    problem: FitProblem,
+    start: FitLanes,
     iterations: int = 100,
     tolerance: float = 1e-12,
     stop: Callable[[], bool] = lambda: False,
-) -> Lanes:
+) -> FitLanes:
     """Every lane brought to the next minimum of its sum of squares.
 
     Parameters
@@ -260,10 +260,10 @@ def least_squares(
         )
         moving = moving[(poor[moving] < 3) & (damping[moving] < 1e12) & (cost[moving] > 1e-30)]
     _total, errors, violation = _cost(problem, variables, side, crank)
-    return Lanes(variables, side, crank, start.sense, start.first, errors, violation)
+    return FitLanes(variables, side, crank, start.sense, start.first, errors, violation)
 
 
-def _cost(problem: Problem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array, Array]:
+def _cost(problem: FitProblem, variables: Array, side: Array, crank: Array) -> tuple[Array, Array, Array]:
     with np.errstate(over="ignore", invalid="ignore"):
         rows, closes = _residuals(problem, variables, side, crank)
         errors = (rows**2).sum(axis=(1, 2))
@@ -278,7 +278,7 @@ def _cost(problem: Problem, variables: Array, side: Array, crank: Array) -> tupl
 
 
 def _step(
-    problem: Problem,
+    problem: FitProblem,
     variables: Array,
     side: Array,
     crank: Array,
@@ -375,12 +375,12 @@ def is_ordered(crank: Array, closed: bool) -> np.ndarray[tuple[int, ...], np.dty
 
 
 def ordered_fit(
-    problem: Problem,
-    lanes: Lanes,
+    problem: FitProblem,
+    lanes: FitLanes,
     closed: bool,
     iterations: int,
     stop: Callable[[], bool] = lambda: False,
-) -> Lanes:
+) -> FitLanes:
     """Least squares with crank angles that grow from target to target by `GAP` at least.
 
     With the linkage kept, the angles are an isotonic regression of where they would go, which tells which targets share
@@ -401,7 +401,7 @@ def ordered_fit(
 
 
 def _shared_angles(
-    problem: Problem, lanes: Lanes, closed: bool
+    problem: FitProblem, lanes: FitLanes, closed: bool
 ) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.int64]], Array]:
     """First target of each group that shares an angle (lanes, n), and the angles, which are in order."""
     rows, _closes = _residuals(problem, lanes.variables, lanes.side, lanes.crank)

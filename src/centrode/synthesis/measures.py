@@ -205,7 +205,7 @@ def _unevenness(mechanism: Mechanism, text: str, where: str, number: int) -> Mea
 
     def compute(places: Array, times: Array, values: Numbers, slopes: Numbers) -> tuple[float, Array]:
         torque, mass = values[moment], values[inertia] + shafts
-        work, work_by = (_worked(places, x) for x in (torque, slopes[moment]))
+        work, work_by = (_work_of_moment(places, x) for x in (torque, slopes[moment]))
         energy = 0.5 * mean * mean * float(mass.mean())
         for _iteration in range(50):
             square = 2 * (energy + work) / mass
@@ -228,7 +228,7 @@ def _unevenness(mechanism: Mechanism, text: str, where: str, number: int) -> Mea
     return Measure(text, {moment: "reduced_moment", inertia: "reduced_inertia"}, compute, "1")
 
 
-def _worked(places: Array, torque: Array) -> Array:
+def _work_of_moment(places: Array, torque: Array) -> Array:
     """Work of a moment less its mean over a turn, by the trapezoidal rule: of a period it converges like a series."""
     step = places[1] - places[0]
     first = np.zeros((1, *torque.shape[1:]))

@@ -41,7 +41,7 @@ Misses: TypeAlias = Callable[[Array], tuple[Array, Array, Array]]
 """values -> misses (m,), derivatives (m, free), drive values at the targets; raises _Open."""
 
 
-class _Open(Exception):
+class _BrokenMotion(Exception):
     """The mechanism does not move all along."""
 
 
@@ -78,7 +78,7 @@ def mechanism_answers(
         numbers = np.asarray(moved.outputs(values))
         slopes = moved.gradient(values)
         if not (np.isfinite(numbers).all() and np.isfinite(slopes).all()):
-            raise _Open
+            raise _BrokenMotion
         return goal.misses(moved, moved.split(numbers), moved.split(slopes))
 
     starts = _starts(moved, goal, low, high, wanted.seed, stop)
@@ -317,7 +317,7 @@ def _stroke_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
         for measure, value, size in goals:
             number, slope = measure.compute(moved.parameter, moved.time, values, by)
             if not math.isfinite(number):
-                raise _Open
+                raise _BrokenMotion
             missed.append(np.array([(number - value) / size]))
             slopes.append(slope[None] / size)
         if dwell is not None:
@@ -354,7 +354,7 @@ def _starts(
         slopes = moved.split(np.zeros((*numbers.shape, *none.shape)))
         try:
             missed, _by, _drive = goal.misses(moved, moved.split(numbers), slopes)
-        except (_Open, ZeroDivisionError):
+        except (_BrokenMotion, ZeroDivisionError):
             continue
         if np.isfinite(missed).all():
             costs.append((float((missed**2).sum()), index))
@@ -372,7 +372,7 @@ def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[floa
         nonlocal best, least
         try:
             missed = misses(low + width * place)[0]
-        except _Open:
+        except _BrokenMotion:
             return np.full(count, 1e3 * (1 + math.sqrt(least) if math.isfinite(least) else 1e3))
         cost = float((missed**2).sum())
         if cost < least:
@@ -382,7 +382,7 @@ def _refine(misses: Misses, start: Array, low: Array, high: Array) -> tuple[floa
     def slopes(place: Array) -> Array:
         try:
             by: Array = misses(low + width * place)[1] * width
-        except _Open:
+        except _BrokenMotion:
             return np.zeros((count, len(place)))
         return by
 

@@ -34,9 +34,9 @@ from centrode.synthesis.least_squares import (
     LEAST_LENGTH,
     PHASE,
     VARIABLES,
+    FitLanes,
+    FitProblem,
     Hinges,
-    Lanes,
-    Problem,
     Targets,
     is_ordered,
     least_squares,
@@ -118,7 +118,7 @@ def _is_closed(wanted: Synthesis, points: Complex) -> bool:
     return bool(abs(points[0] - points[-1]) <= 1.5 * steps.max() and len(points) > 4)
 
 
-def _problem(wanted: Synthesis, targets: Targets, middle: complex, size: float) -> Problem:
+def _problem(wanted: Synthesis, targets: Targets, middle: complex, size: float) -> FitProblem:
     """Variables, bounds and constraints in units of the targets, the middle of which is the origin."""
     low, high = np.full(VARIABLES, -np.inf), np.full(VARIABLES, np.inf)
     low[[CRANK, COUPLER, ROCKER]] = LEAST_LENGTH
@@ -145,7 +145,7 @@ def _problem(wanted: Synthesis, targets: Targets, middle: complex, size: float) 
     free[PHASE] = wanted.timing == "phase"
     free[ATTACHMENT] = targets.directions is not None
     hinges = hinges_of(wanted.constraints, size)
-    return Problem(targets, free, low, high, hinges)
+    return FitProblem(targets, free, low, high, hinges)
 
 
 def _to_units(variable: int, value: float, middle: complex, size: float) -> float:
@@ -272,7 +272,7 @@ def is_within(linkage: Array, side: float, size: tuple[float, ...]) -> bool:
     return bool(width + slack <= size[0] * (1 + 1e-9) and height + slack <= size[1] * (1 + 1e-9))
 
 
-def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) -> Lanes:
+def _candidates(wanted: Synthesis, problem: FitProblem, closed: bool, seed: int) -> FitLanes:
     targets = problem.targets
     points = np.asarray(targets.points, dtype=np.complex128)
     if targets.crank is not None:
@@ -301,7 +301,7 @@ def _candidates(wanted: Synthesis, problem: Problem, closed: bool, seed: int) ->
 
 
 def _answers(
-    task: SynthesisTask, problem: Problem, lanes: Lanes, middle: complex, size: float, closed: bool
+    task: SynthesisTask, problem: FitProblem, lanes: FitLanes, middle: complex, size: float, closed: bool
 ) -> tuple[list[Answer], float]:
     """Distinct answers that keep everything, best first, and the least error of those that do not."""
     wanted = task.synthesis
@@ -372,8 +372,8 @@ def _alike(answer: Answer, other: Answer, size: float) -> bool:
 
 def _trade(
     task: SynthesisTask,
-    problem: Problem,
-    lanes: Lanes,
+    problem: FitProblem,
+    lanes: FitLanes,
     answers: list[Answer],
     middle: complex,
     size: float,
@@ -423,7 +423,7 @@ def _trade(
     return front[: wanted.answers]
 
 
-def _broken_name(constraints: Constraints, lanes: Lanes, size: float) -> str:
+def _broken_name(constraints: Constraints, lanes: FitLanes, size: float) -> str:
     """The constraint that the lane breaks which breaks least; empty where none is broken."""
     if not len(lanes.side):
         return ""

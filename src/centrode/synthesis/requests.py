@@ -156,7 +156,7 @@ def _size(value: object) -> tuple[float, ...]:
     return width, height
 
 
-class Dwell(DescriptionPart):
+class DwellRequest(DescriptionPart):
     """How an output rests.
 
     Attributes
@@ -233,7 +233,7 @@ class Synthesis(DescriptionPart):
     time_ratio: Annotated[float, PlainValidator(_ratio)] | None = None
     transmission: Annotated[float, quantity("angle", _transmission)] | None = None
     swing: Annotated[float, quantity("angle", positive)] | None = None
-    dwell: Dwell | None = None
+    dwell: DwellRequest | None = None
     length: Annotated[float, quantity("length", positive)] | None = None
     trade_off: Annotated[Literal["size", "transmission"], choice("size", "transmission")] | None = None
     answers: Annotated[int, whole_number(1, MOST_ANSWERS)] = MOST_ANSWERS

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from centrode.synthesis.four_bars import Array, Booleans
-from centrode.synthesis.least_squares import ATTACHMENT, PHASE, VARIABLES, Kernel, Targets
+from centrode.synthesis.least_squares import ATTACHMENT, PHASE, VARIABLES, FitKernel, Targets
 
 SPHERE_DIMENSIONS = (
     "O.longitude", "O.latitude", "D.longitude", "D.latitude", "OA", "AB", "DB", "P.longitude", "P.latitude",
@@ -173,7 +173,7 @@ def _slopes(targets: Targets, variables: Array, side: Array, angles: Array) -> t
     return by, turn
 
 
-SPHERE = Kernel(_residuals, _slopes)
+SPHERE = FitKernel(_residuals, _slopes)
 
 
 def in_range(linkage: Array, attachment: float) -> tuple[Array, float]:

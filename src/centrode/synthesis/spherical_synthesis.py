@@ -22,9 +22,9 @@ from centrode.synthesis.least_squares import (
     ATTACHMENT,
     PHASE,
     VARIABLES,
+    FitLanes,
+    FitProblem,
     Hinges,
-    Lanes,
-    Problem,
     Targets,
     is_ordered,
 )
@@ -151,7 +151,7 @@ def _map(points: Array) -> Any:
     return longitude + 1j * latitude
 
 
-def _problem(wanted: Synthesis, targets: Targets) -> Problem:
+def _problem(wanted: Synthesis, targets: Targets) -> FitProblem:
     low, high = np.full(VARIABLES, -np.inf), np.full(VARIABLES, np.inf)
     low[[CRANK, COUPLER, ROCKER]], high[[CRANK, COUPLER, ROCKER]] = LEAST_ARC, np.pi - LEAST_ARC
     point = wanted.point
@@ -171,7 +171,7 @@ def _problem(wanted: Synthesis, targets: Targets) -> Problem:
             raise InputError(where, what, _("a length is an arc between 0 and 180 deg"))
     free = np.ones(VARIABLES, dtype=bool)
     free[PHASE], free[ATTACHMENT] = wanted.timing == "phase", targets.directions is not None
-    return Problem(targets, free, low, high, _hinges_of(wanted.constraints), kernel=SPHERE)
+    return FitProblem(targets, free, low, high, _hinges_of(wanted.constraints), kernel=SPHERE)
 
 
 def _hinges_of(constraints: Constraints) -> Hinges | None:
@@ -217,7 +217,7 @@ def _drawn_shapes(random: np.random.Generator, count: int, *, turning: bool) -> 
     return np.concatenate(kept)[:count], np.where(random.uniform(size=count) < 0.5, -1.0, 1.0)
 
 
-def _candidates(wanted: Synthesis, problem: Problem, closed: bool) -> Lanes:
+def _candidates(wanted: Synthesis, problem: FitProblem, closed: bool) -> FitLanes:
     """Random linkages, each turned to where it fits best (W. Kabsch, Acta Cryst. A 32, 1976, 922-923)."""
     targets = problem.targets
     random = np.random.default_rng(wanted.seed)
@@ -277,10 +277,12 @@ def _candidates(wanted: Synthesis, problem: Problem, closed: bool) -> Lanes:
         cosine = (heading * targets.directions).sum(axis=(1, 2))
         variables[:, ATTACHMENT] = np.arctan2((across * targets.directions).sum(axis=(1, 2)), cosine)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
-    return Lanes(variables, side, crank, sense)
+    return FitLanes(variables, side, crank, sense)
 
 
-def _answers(task: SynthesisTask, problem: Problem, lanes: Lanes, closed: bool) -> tuple[list[Answer], float]:
+def _answers(
+    task: SynthesisTask, problem: FitProblem, lanes: FitLanes, closed: bool
+) -> tuple[list[Answer], float]:
     """Distinct answers that keep everything, best first, and the least error of those that do not."""
     wanted = task.synthesis
     found: list[Answer] = []

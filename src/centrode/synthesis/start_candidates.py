@@ -10,7 +10,7 @@ import numpy as np
 
 from centrode.synthesis.curve_atlas import DENSE, PLACES, Atlas, at_equal_distances, atlas, descriptors
 from centrode.synthesis.four_bars import Array, Complex, coupler_motion, mirror_image, transform
-from centrode.synthesis.least_squares import PHASE, VARIABLES, Lanes
+from centrode.synthesis.least_squares import PHASE, VARIABLES, FitLanes
 
 CANDIDATES = 500
 ARC_SHAPES = 5000
@@ -22,7 +22,7 @@ PHASES = 36
 """Starting angles of the crank that are tried where its angles are given."""
 
 
-def closed_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
+def closed_candidates(points: Complex, count: int = CANDIDATES) -> FitLanes:
     """Linkages that draw something like a closed path, chosen by Fourier descriptors."""
     book = atlas()
     even, where = at_equal_distances(points[None], PLACES, closed=True)
@@ -36,7 +36,7 @@ def closed_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
                 offers.append((int(index), mirror, backwards))
     made = [_place_linkage(book, even[0], shares, *offer) for offer in offers]
     best = np.argsort([miss for miss, *_rest in made], kind="stable")[:count]
-    return Lanes(
+    return FitLanes(
         np.concatenate([made[k][1] for k in best]),
         np.array([made[k][2] for k in best]),
         np.stack([made[k][3] for k in best]),
@@ -89,7 +89,7 @@ def _as_variables(linkages: Array) -> Array:
     return variables
 
 
-def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
+def open_candidates(points: Complex, count: int = CANDIDATES) -> FitLanes:
     """Linkages of whose curves an arc looks like an open path."""
     book = atlas()
     even, _where = at_equal_distances(points[None], ARC_PLACES, closed=False)
@@ -125,7 +125,7 @@ def open_candidates(points: Complex, count: int = CANDIDATES) -> Lanes:
         _place_arc(book, int(chosen[index]), points, shares, start, width, mirror, backwards)
         for _miss, index, start, width, mirror, backwards in found[:count]
     ]
-    return Lanes(
+    return FitLanes(
         np.concatenate([one[0] for one in made]),
         np.array([one[1] for one in made]),
         np.stack([one[2] for one in made]),
@@ -168,7 +168,7 @@ def _best_place(linkage: Array, drawn: Complex, shape: Complex) -> tuple[Array, 
     return transform(linkage, np.array([factor]), np.array([shift])), float(np.angle(factor))
 
 
-def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: int = CANDIDATES) -> Lanes:
+def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: int = CANDIDATES) -> FitLanes:
     """Linkages that draw something like the points at given crank angles (n,) [rad]."""
     book = atlas()
     curves = book.dense.astype(np.complex64)
@@ -205,7 +205,7 @@ def timed_candidates(points: Complex, angles: Array, phase_free: bool, count: in
         sides.append(side)
         cranks.append(angles)
     sense = np.sign(angles[-1] - angles[0]) or 1.0
-    return Lanes(np.concatenate(variables), np.array(sides), np.stack(cranks), np.full(len(sides), sense))
+    return FitLanes(np.concatenate(variables), np.array(sides), np.stack(cranks), np.full(len(sides), sense))
 
 
 def random_candidates(
@@ -215,7 +215,7 @@ def random_candidates(
     high: Array,
     random: np.random.Generator,
     count: int,
-) -> Lanes:
+) -> FitLanes:
     """Linkages whose variables are drawn evenly between bounds; without bounds within twice the size of the targets."""
     least = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - 4.0, -2.0))
     greatest = np.where(np.isfinite(high), high, np.maximum(least + 4.0, 2.0))
@@ -223,11 +223,11 @@ def random_candidates(
     side = np.where(random.uniform(size=count) < 0.5, -1.0, 1.0)
     if angles is not None:
         crank = np.broadcast_to(angles, (count, len(angles))).copy()
-        return Lanes(variables, side, crank, np.ones(count))
+        return FitLanes(variables, side, crank, np.ones(count))
     variables[:, PHASE] = 0.0
     turn = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
     motion = coupler_motion(variables[:, :9], turn, side)
     distance = np.abs(motion.point[:, :, None] - points) + np.where(motion.radicand[:, :, None] > 0, 0.0, 1e3)
     crank = np.unwrap(turn[np.argmin(distance, axis=1)], axis=1)
     sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
-    return Lanes(variables, side, crank, sense)
+    return FitLanes(variables, side, crank, sense)

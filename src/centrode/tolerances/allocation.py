@@ -25,7 +25,7 @@ from centrode.model.limits_and_fits import GRADES, standard_tolerance, widest_gr
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.tolerances import is_size, kind_of_dimension
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import unit_of
 from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms
 from centrode.tolerances.dimension_limits import SIGMAS, DimensionLimits, check_paths, length_paths
@@ -167,7 +167,7 @@ def allocate_tolerances(
         method == METHODS[1],
         factor,
     )
-    if not problem.bounded.any():
+    if not problem.bounded_numbers.any():
         raise InputError("bounds", _("the outputs depend on none of these numbers"), _("name other paths"))
     if kind == "cost":
         halves = problem.cheapest()
@@ -175,8 +175,8 @@ def allocate_tolerances(
         _require_one_kind(mechanism, paths)
         halves = problem.equal()
     else:
-        halves = _graded(mechanism, paths, problem)
-    rounded, grades = _rounded(mechanism, paths, halves)
+        halves = _graded_half_widths(mechanism, paths, problem)
+    rounded, grades = _rounded_half_widths(mechanism, paths, halves)
     found = Allocation(
         mechanism, paths, halves, rounded, grades, problem.cost(halves), problem.cost(rounded), {}, {}, method, kind
     )  # fmt: skip
@@ -254,7 +254,7 @@ class _Programme:
         return np.asarray(np.abs(self.gradients) * self.factor / self.most[:, None])
 
     @property
-    def bounded(self) -> npt.NDArray[np.bool_]:
+    def bounded_numbers(self) -> npt.NDArray[np.bool_]:
         """Whether any bound depends on a number."""
         weights = self.weights
         return np.asarray(weights.max(axis=0) > LEAST_SENSITIVITY * weights.max())
@@ -278,11 +278,11 @@ class _Programme:
     def equal(self) -> Array:
         """The same half width for all."""
         halves = np.full(len(self.costs), 1.0 / self.total(np.ones(len(self.costs))).max())
-        return np.where(self.bounded, halves, np.inf)
+        return np.where(self.bounded_numbers, halves, np.inf)
 
     def cheapest(self) -> Array:
         """Half widths at the least cost."""
-        used = self.bounded
+        used = self.bounded_numbers
         rows = self._deciding_rows(self.weights[:, used])
         costs = self.costs[used]
         starts = [self._of_one_row(row, costs) for row in rows]
@@ -348,7 +348,7 @@ def _require_one_kind(mechanism: Mechanism, paths: Sequence[str]) -> None:
         raise InputError("by", what, _('name numbers of one kind, or use kind="cost"'))
 
 
-def _graded(mechanism: Mechanism, paths: Sequence[str], problem: _Programme) -> Array:
+def _graded_half_widths(mechanism: Mechanism, paths: Sequence[str], problem: _Programme) -> Array:
     """The widest grade that all lengths of links can have, as half widths."""
     for path in paths:
         if not is_size(path, mechanism.space):
@@ -362,7 +362,9 @@ def _graded(mechanism: Mechanism, paths: Sequence[str], problem: _Programme) -> 
     raise InputError("bounds", _("not even grade IT1 satisfies the bounds"), _('use kind="cost"'))
 
 
-def _rounded(mechanism: Mechanism, paths: Sequence[str], halves: Array) -> tuple[Array, tuple[int, ...]]:
+def _rounded_half_widths(
+    mechanism: Mechanism, paths: Sequence[str], halves: Array
+) -> tuple[Array, tuple[int, ...]]:
     """Half widths rounded down, and the grades of those that have one."""
     rounded, grades = halves.copy(), [0] * len(paths)
     for number, path in enumerate(paths):

@@ -19,7 +19,7 @@ PARTS, ROUNDS = 16, 5
 
 
 @dataclass(frozen=True)
-class Stop:
+class LimitStop:
     """The mechanism that first stops as tolerances grow.
 
     Attributes
@@ -53,7 +53,7 @@ class AssemblyInLimits:
     all_corners: bool
     drawn: int
     stopped_drawn: int
-    first: Stop | None
+    first: LimitStop | None
 
     @property
     def moves(self) -> bool:
@@ -61,7 +61,7 @@ class AssemblyInLimits:
         return not self.stopped_corners and not self.stopped_drawn
 
 
-def first_stop(mechanisms: DeviatedMechanisms, stopped: Array) -> Stop | None:
+def first_stop(mechanisms: DeviatedMechanisms, stopped: Array) -> LimitStop | None:
     """The least share of the tolerances at which one of these mechanisms (n, paths) stops, and where."""
     if not len(stopped):
         return None
@@ -81,8 +81,8 @@ def first_stop(mechanisms: DeviatedMechanisms, stopped: Array) -> Stop | None:
     prepared = mechanisms.prepared
     limits = [e for e in mechanisms.events_of(mechanisms.limits.values + deviations) if e.kind == "limit"]
     if not limits:
-        return Stop(float(high[row]), few[row], float("nan"), "")
+        return LimitStop(float(high[row]), few[row], float("nan"), "")
     start = float(prepared.kinematics.path.initial)
     event = min(limits, key=lambda e: abs(e.at - start))
     group = prepared.structure.groups[event.group]
-    return Stop(float(high[row]), few[row], event.at, "-".join(group.links or group.points))
+    return LimitStop(float(high[row]), few[row], event.at, "-".join(group.links or group.points))

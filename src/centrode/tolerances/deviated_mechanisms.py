@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError, Status
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.reading import value_text
@@ -98,7 +98,7 @@ class DeviatedMechanisms:
         return self.gradients_of(self.limits.values)
 
     @cached_property
-    def reached(self) -> int:
+    def reached_samples(self) -> int:
         """Samples that the mechanism of the description reaches."""
         return int(np.sum(self.solver.move(list(self.limits.values)).status == Status.OK))
 
@@ -116,7 +116,7 @@ class DeviatedMechanisms:
             for name, column in zip(self.texts, self.solver.columns, strict=True)
         }
 
-    def events_of(self, values: Array) -> tuple[Event, ...]:
+    def events_of(self, values: Array) -> tuple[RadicandZero, ...]:
         """Limits and change points of one mechanism."""
         return self.solver.move(list(values)).events
 
@@ -153,7 +153,7 @@ class DeviatedMechanisms:
             outputs=self.formulas,
             samples=self.samples,
         )
-        moves = (found["samples_ok"].to_numpy() >= self.reached) & ~impossible
+        moves = (found["samples_ok"].to_numpy() >= self.reached_samples) & ~impossible
         outputs = {
             name: found[label].to_numpy() for name, label in zip(self.texts, self.formulas, strict=True)
         }
@@ -189,6 +189,6 @@ class DeviatedMechanisms:
         rows, moves = [], []
         for row in values:
             rows.append(self.outputs_of(row))
-            moves.append(int(np.sum(self.solver.move(list(row)).status == Status.OK)) >= self.reached)
+            moves.append(int(np.sum(self.solver.move(list(row)).status == Status.OK)) >= self.reached_samples)
         outputs: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in self.texts}
         return Evaluated(outputs, np.array(moves))

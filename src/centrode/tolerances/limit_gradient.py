@@ -59,7 +59,7 @@ def gradient_at_limit(prepared: Ready, paths: Sequence[str], limit: float) -> Ar
         return np.full(len(paths), np.nan)
     free = FreeMechanism(prepared, grid_at(prepared.kinematics.path, np.array([limit])), tuple(paths))
     own = [value_at(prepared.mechanism, path) for path in paths]
-    varied = free.varied(own)
+    varied = free.varied_numbers(own)
     drives = prepared.kinematics.path.drive_values(EXPRESSIONS, variable(DRIVE))
     fixed = Positions.of_frame(varied.numbers, drives, EXPRESSIONS)
     driven = Positions({**at.points, **fixed.points}, at.poses, drives, at.angles)

@@ -20,7 +20,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.tolerances import Limits, ToleranceOutput
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.sweeps.designs import unit_of
 from centrode.sweeps.outputs import identifier
 from centrode.tolerances.assembly_in_limits import AssemblyInLimits, first_stop
@@ -29,7 +29,13 @@ from centrode.tolerances.deviated_mechanisms import DeviatedMechanisms, Evaluate
 from centrode.tolerances.dimension_limits import DimensionLimits, limits_of
 from centrode.tolerances.joint_play import play_of
 from centrode.tolerances.sensitivity import Outputs, named_outputs
-from centrode.tolerances.statistical import Drawn, Propagated, draw_deviations, drawn_outputs, propagated
+from centrode.tolerances.statistical import (
+    DrawnOutput,
+    Propagated,
+    draw_deviations,
+    drawn_outputs,
+    propagated_output,
+)
 from centrode.tolerances.worst_case import (
     ALL_CORNERS,
     Extent,
@@ -76,7 +82,7 @@ class OutputAccuracy:
     linear: Extent
     true: TrueExtent
     statistics: Propagated
-    drawn: Drawn | None
+    drawn: DrawnOutput | None
     within: tuple[Array, Array] | None
     clearance: ClearanceExtent | None
 
@@ -186,7 +192,7 @@ def tolerances(
     ()
     """
     mechanism = mechanism_of(mechanism)
-    texts, given = _requested(mechanism, outputs, bounds)
+    texts, given = _requested_outputs(mechanism, outputs, bounds)
     draws, seed = _checked_count(draws, "draws", 1, MOST_DRAWS), _checked_count(seed, "seed", 0, 2**63)
     deviating = limits_of(mechanism, limits)
     prepared = ready(mechanism)
@@ -219,7 +225,7 @@ def tolerances(
             mechanisms.gradients[name],
             linear_extent(mechanisms.gradients[name], deviating.lower, deviating.upper),
             true[name],
-            propagated(mechanisms.gradients[name], deviating),
+            propagated_output(mechanisms.gradients[name], deviating),
             drawn.get(name),
             within.get(name),
             clearances.get(name),
@@ -239,7 +245,7 @@ def tolerances(
 
 def _drawn(
     mechanisms: DeviatedMechanisms, draws: int, seed: int, within: Mapping[str, tuple[Array, Array] | None]
-) -> tuple[dict[str, Drawn], int, int]:
+) -> tuple[dict[str, DrawnOutput], int, int]:
     """Statistics of drawn mechanisms, how many of them move, and how many were drawn."""
     # outputs of samples would fill the memory: fewer mechanisms tell as much of a band
     draws = min(draws, mechanisms.most_at_once)
@@ -258,7 +264,7 @@ def _drawn(
     return drawn_outputs(mechanisms, whole, within), int(np.count_nonzero(whole.moves)), draws
 
 
-def _requested(
+def _requested_outputs(
     mechanism: Mechanism, outputs: Outputs | None, bounds: Bounds | None
 ) -> tuple[dict[str, str], dict[str, Limits | float | None]]:
     """Name -> text of each output, and its bounds."""

@@ -368,7 +368,7 @@ def _radicand_gradient(prepared: Ready, paths: tuple[str, ...], limit: float) ->
     span = grid_at(prepared.kinematics.path, np.array([limit]))
     free = FreeMechanism(prepared, span, paths)
     own = [value_at(prepared.mechanism, path) for path in paths]
-    varied = free.varied(own)
+    varied = free.varied_numbers(own)
     traced = trace_motion(prepared, span, varied, differentiable=True)
     if traced.steps:
         return np.full(len(paths), np.nan)
@@ -391,7 +391,7 @@ def _radicand_gradient(prepared: Ready, paths: tuple[str, ...], limit: float) ->
 
 def _values_at(prepared: Ready, free: FreeMechanism, own: Sequence[float], traced: Traced) -> dict[str, Any]:
     """Variables of a trace at the samples."""
-    values: dict[str, Any] = dict(free.varied(own).values(free.dimensions(own)))
+    values: dict[str, Any] = dict(free.varied_numbers(own).values(free.dimensions(own)))
     values |= {path: np.array([x]) for path, x in zip(free.paths, own, strict=True)}
     values |= inputs_of(prepared.kinematics.path, free.span)
     solved = solve(prepared, free.span)

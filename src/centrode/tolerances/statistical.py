@@ -51,7 +51,7 @@ class Propagated:
         return np.asarray(SIGMAS_SHOWN * self.deviation)
 
 
-def propagated(gradient: Array, limits: DimensionLimits) -> Propagated:
+def propagated_output(gradient: Array, limits: DimensionLimits) -> Propagated:
     """Mean and standard deviation of an output by its derivatives (..., paths)."""
     # in units of the standard deviations no derivative by a length meets one by an angle
     scaled = gradient * limits.deviations
@@ -153,7 +153,7 @@ def yield_of(kept: int, drawn: int) -> Yield:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnOutput:
     """What drawn mechanisms give of an output.
 
     Attributes
@@ -184,7 +184,7 @@ def drawn_outputs(
     mechanisms: DeviatedMechanisms,
     computed: Evaluated,
     bounds: Mapping[str, tuple[Array, Array] | None],
-) -> dict[str, Drawn]:
+) -> dict[str, DrawnOutput]:
     """Statistics of each output of drawn mechanisms."""
     found = {}
     everything = bool(computed.moves.all())
@@ -201,7 +201,7 @@ def drawn_outputs(
             kept = yield_of(int(np.count_nonzero(inside)), len(values))
         whole = not mechanisms.of_samples[name]
         counts, bins = np.histogram(moving, BINS) if whole else (np.array([], dtype=np.int64), np.array([]))
-        found[name] = Drawn(
+        found[name] = DrawnOutput(
             len(moving),
             np.asarray(moving.mean(axis=0)),
             np.asarray(moving.std(axis=0, ddof=1)) if len(moving) > 1 else np.zeros(moving.shape[1:]),

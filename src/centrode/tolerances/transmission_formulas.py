@@ -52,7 +52,7 @@ def _in_plane(prepared: Ready, group: Group, varied: Container[str]) -> str | No
     if isinstance(group, Aim) and group.contact is None:
         # the arm's end moves square to it: the angle is that between the arm's normal and the guide
         arm = _arm(group.pivot, group.target)
-        return _acute(*_crossed(arm, _guide(prepared, group.link, group.guide, varied)))
+        return _acute(*_crossing_angle(arm, _guide(prepared, group.link, group.guide, varied)))
     if not isinstance(group, Meet) or group.has_stop:
         return None
     arms, lines = [], []
@@ -66,7 +66,7 @@ def _in_plane(prepared: Ready, group: Group, varied: Container[str]) -> str | No
     if len(arms) == 2:
         return f"atan2(abs({_cross(*arms)}), {_dot(*arms)})"
     if len(arms) == 1 and len(lines) == 1:
-        return _acute(*_crossed(arms[0], lines[0]))
+        return _acute(*_crossing_angle(arms[0], lines[0]))
     if len(lines) == 2:
         return _acute(_cross(*lines), _dot(*lines))
     return None
@@ -76,7 +76,7 @@ def _acute(sine: str, cosine: str) -> str:
     return f"atan2(abs({sine}), abs({cosine}))"
 
 
-def _crossed(arm: Pair, line: Pair) -> Pair:
+def _crossing_angle(arm: Pair, line: Pair) -> Pair:
     """Sine and cosine of the angle between the normal of an arm and a line."""
     return _dot(arm, line), _cross(arm, line)
 

@@ -106,7 +106,9 @@ def true_extents(
         if mechanisms.of_samples[name]:
             found[name] = _of_samples(usable, nominal, corners)
             continue
-        least, greatest = (_improved(mechanisms, name, corners, sense * usable, sense) for sense in (-1, 1))
+        least, greatest = (
+            _improved_corner(mechanisms, name, corners, sense * usable, sense) for sense in (-1, 1)
+        )
         found[name] = TrueExtent(
             np.asarray(least.value - nominal), np.asarray(greatest.value - nominal), least, greatest
         )
@@ -130,7 +132,9 @@ def _of_samples(values: Array, nominal: Array, corners: Array) -> TrueExtent:
     return TrueExtent(lower, upper, *ends)
 
 
-def _improved(mechanisms: DeviatedMechanisms, name: str, corners: Array, value: Array, sense: int) -> Corner:
+def _improved_corner(
+    mechanisms: DeviatedMechanisms, name: str, corners: Array, value: Array, sense: int
+) -> Corner:
     """The corner with the greatest sense * output, moved on where derivatives there point inwards."""
     if not np.isfinite(value).any():
         return Corner(float("nan"), np.full(corners.shape[1], np.nan))

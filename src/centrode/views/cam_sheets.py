@@ -47,7 +47,7 @@ from centrode.views.geometric_drawings import (
     in_degrees,
     length_facts,
     mesh_with,
-    mirrored,
+    mirror_image,
     numbered_names,
     point_of,
     ticks_of,
@@ -115,8 +115,8 @@ def driving_cam_sheet(drive: Drive, sheet: ProfileSheet, display: Display) -> Pr
     sheet = replace(sheet, facts=facts, display=display)
     if drive.cam is None or not drive.cam.swings or drive.lowers:
         return sheet
-    choice = mirrored(sheet.choice) if isinstance(sheet.choice, GeometricDrawing) else sheet.choice
-    return replace(sheet, choice=choice, profile=mirrored(sheet.profile))
+    choice = mirror_image(sheet.choice) if isinstance(sheet.choice, GeometricDrawing) else sheet.choice
+    return replace(sheet, choice=choice, profile=mirror_image(sheet.profile))
 
 
 # Diagrams over the angle of the cam
@@ -342,7 +342,7 @@ def _profile(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
         circles.append(GeometryCircle(CENTRE, body.base_radius + body.touch.roller))
         circles += [GeometryCircle(point_of(one), body.touch.roller) for one in places.centre[1:]]
         circles.append(GeometryCircle(point_of(places.centre[0]), body.touch.roller, LineLook.MAIN))
-    frame, more, further, tips = _inverted(body, phi)
+    frame, more, further, tips = _inverted_motion(body, phi)
     arm = np.array([math.cos(RADIUS_AT), math.sin(RADIUS_AT)]) * body.base_radius
     lines += [*more, GeometryLine(np.array([CENTRE, tuple(arm)]), head=True)]
     names = [
@@ -367,7 +367,7 @@ def _profile(cam: PlateCam, body: FollowerCam, phi: Array) -> GeometricDrawing:
     )
 
 
-def _inverted(
+def _inverted_motion(
     body: FollowerCam, phi: Array
 ) -> tuple[GeometryFrame, list[GeometryLine], list[GeometryCircle], Array]:
     """What belongs to the frame, lines and circles of the follower's positions, and where their numbers stand."""

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from centrode.analysis.instant_centres.bodies import Pair
-    from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
+    from centrode.analysis.instant_centres.kennedy import CentreConstruction, KennedyStep
     from centrode.analysis.instant_centres.results import CentreResults
 
 MOST_ROWS = 60
@@ -114,7 +114,7 @@ def _bodies_by_number(results: CentreResults) -> Iterator[Text]:
         yield Joined((Number(number), body_text(results.mechanism, name)), " ")
 
 
-def _table(results: CentreResults, centres: xr.Dataset, construction: Construction | None) -> Table:
+def _table(results: CentreResults, centres: xr.Dataset, construction: CentreConstruction | None) -> Table:
     """The centres of one instant: symbol, bodies, place, case, how each is constructed, and by how much both differ.
 
     On the sphere the place is the end of the axis, and the relative angular velocity about it stands behind it.
@@ -155,7 +155,7 @@ def centre_symbol(pair: Pair, bodies: int) -> Indexed:
     return Indexed("P", f"{pair[0]}{',' if bodies > 10 else ''}{pair[1]}")
 
 
-def _step(construction: Construction | None, pair: Pair) -> KennedyStep | None:
+def _step(construction: CentreConstruction | None, pair: Pair) -> KennedyStep | None:
     steps = () if construction is None else construction.steps
     return next((step for step in steps if step.pair == order_pair(pair)), None)
 
@@ -213,16 +213,16 @@ def step_text(step: KennedyStep, bodies: int, between: str = " ", *, named: bool
     return {**joints, "rest": rest, "field": field}[step.how]
 
 
-def _steps_leading_to(construction: Construction, pairs: Sequence[tuple[str, str]]) -> Iterator[Text]:
+def _steps_leading_to(construction: CentreConstruction, pairs: Sequence[tuple[str, str]]) -> Iterator[Text]:
     """The steps that some centres were found from, themselves left out: "P10 hinge O"."""
     wanted = _numbers(construction, pairs)
-    for step in construction.needed(wanted).steps:
+    for step in construction.needed_steps(wanted).steps:
         if step.pair not in wanted:
             bodies = len(construction.bodies)
             yield Joined((centre_symbol(step.pair, bodies), step_text(step, bodies)), " ")
 
 
-def _numbers(construction: Construction, pairs: Sequence[tuple[str, str]]) -> list[Pair]:
+def _numbers(construction: CentreConstruction, pairs: Sequence[tuple[str, str]]) -> list[Pair]:
     """Pairs by the numbers of their bodies, the later body first."""
     names = construction.bodies
     return [order_pair((names.index(first), names.index(second))) for first, second in pairs]
@@ -292,13 +292,13 @@ def _scene(
     results: CentreResults,
     motion: xr.Dataset,
     sample: int,
-    construction: Construction,
+    construction: CentreConstruction,
     pairs: Sequence[tuple[str, str]] | None,
 ) -> Scene:
     """A position with its centres, the lines that they were found on, and the circle diagram."""
     mechanism = results.mechanism
     shown = _shown(construction, pairs)
-    needed, count = construction.needed(shown), len(construction.bodies)
+    needed, count = construction.needed_steps(shown), len(construction.bodies)
     marks = {
         step.pair: Mark(
             np.array(step.place),
@@ -333,7 +333,7 @@ def _scene(
     )
 
 
-def _shown(construction: Construction, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
+def _shown(construction: CentreConstruction, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
     if pairs is not None:
         return _numbers(construction, pairs)
     everything = [step.pair for step in construction.steps]
@@ -344,7 +344,7 @@ def _shown(construction: Construction, pairs: Sequence[tuple[str, str]] | None) 
     )
 
 
-def _lines(step: KennedyStep, needed: Construction, marks: dict[Pair, Mark]) -> Iterator[StraightLine]:
+def _lines(step: KennedyStep, needed: CentreConstruction, marks: dict[Pair, Mark]) -> Iterator[StraightLine]:
     """The lines of Kennedy's theorem through a centre, each by the centres on it; one may lie at infinity."""
     directions = {step.pair: np.array(step.direction) for step in needed.steps if step.direction}
     for by in step.by:
@@ -356,7 +356,7 @@ def _lines(step: KennedyStep, needed: Construction, marks: dict[Pair, Mark]) -> 
 
 
 def _great_circles(
-    step: KennedyStep, _needed: Construction, marks: dict[Pair, Mark]
+    step: KennedyStep, _needed: CentreConstruction, marks: dict[Pair, Mark]
 ) -> Iterator[StraightLine]:
     """The great circles that an axis was found on, each through two known axes."""
     for by in step.by:

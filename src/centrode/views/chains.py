@@ -163,10 +163,10 @@ def chains_sheet(found: ChainList, number: int | None = None) -> Sheet:
     chosen = [chains[place] for place in shown]
     table = Table(tuple(_chain_columns(chosen, names)), title)
     pictures = _pages(title, names, partial(_chain_cell, chosen))
-    return Sheet(facts=facts, tables={"chains": table}, pictures=pictures, **_printed(table))
+    return Sheet(facts=facts, tables={"chains": table}, pictures=pictures, **_printed_table(table))
 
 
-def _printed(table: Table) -> dict[str, Any]:
+def _printed_table(table: Table) -> dict[str, Any]:
     """The table on the terminal, or where it is found if it is long."""
     if len(table.columns[0].values) <= MOST_ROWS:
         return {"printed": (table,)}
@@ -235,7 +235,7 @@ def groups_sheet(found: AssurList) -> Sheet:
     )
     table = Table(columns, title)
     pictures = _pages(title, names, partial(_group_cell, groups))
-    return Sheet(facts=facts, tables={"groups": table}, pictures=pictures, **_printed(table))
+    return Sheet(facts=facts, tables={"groups": table}, pictures=pictures, **_printed_table(table))
 
 
 def _group_name(group: AssurScheme, number: int) -> Text:

@@ -71,11 +71,11 @@ def _turning(results: MotionResults) -> Iterator[Text]:
     """Whether the drive turns fully, or what bounds it."""
     mechanism, parameter = results.mechanism, results.mechanism.motion_parameter
     names = Joined([Name(drive.name) for drive in parameter.drives])
-    if results.unreached and results.limits:
+    if results.unreached_samples and results.limits:
         places = Joined([place_number(end.value, parameter.variable.unit) for end in results.limits], "; ")
         yield Sentence("The mechanism does not turn fully: its motion is bounded at {places}.", places=places)
         return
-    if results.unreached:
+    if results.unreached_samples:
         yield Sentence("The mechanism does not reach every position of the range that is studied.")
         return
     turns = False
@@ -134,7 +134,9 @@ def _strokes(results: MotionResults, extremes: Found) -> Iterator[Text]:
         rates = _rates(
             results, extremes["slide_velocity", guide.id], extremes["slide_acceleration", guide.id]
         )
-        if results.unreached and stroke > STILL:  # towards a limit velocities may grow beyond all bounds
+        if (
+            results.unreached_samples and stroke > STILL
+        ):  # towards a limit velocities may grow beyond all bounds
             yield Sentence(
                 "Point {name} travels {stroke} along its guide in the part of the motion that is reached.",
                 name=Name(guide.point),
@@ -155,7 +157,7 @@ def _swings(results: MotionResults, extremes: Found) -> Iterator[Text]:
     mechanism = results.mechanism
     driven = {drive.link for drive in mechanism.drives}
     fixed = set(mechanism.frame.points)
-    if mechanism.space != "plane" or results.unreached:
+    if mechanism.space != "plane" or results.unreached_samples:
         return
     for name, link in mechanism.links.items():
         if name in driven or not fixed & set(link.points) or ("angle", name) not in extremes:
@@ -175,7 +177,7 @@ def _swings(results: MotionResults, extremes: Found) -> Iterator[Text]:
 
 def _angles_on_sphere(results: MotionResults, data: xarray.Dataset, extremes: Found) -> Iterator[Text]:
     """Of each link that swings about a hinge of the frame, and of each hinge of moving links: extremes of the angle."""
-    if results.mechanism.space != "sphere" or results.unreached:
+    if results.mechanism.space != "sphere" or results.unreached_samples:
         return
     driven = {drive.link for drive in results.mechanism.drives}
     for kind in ("joint", "hinge"):

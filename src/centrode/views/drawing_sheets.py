@@ -139,7 +139,7 @@ def diagram_sheet(mechanism: Mechanism, course: xarray.Dataset, name: str) -> Di
     return DiagramSheet(Sentence("Kinematic diagrams"), tuple(diagrams))
 
 
-def _counted(plan: PositionPlan, values: Array) -> Array:
+def _drive_progress(plan: PositionPlan, values: Array) -> Array:
     """How far the drive has gone from position 0; within a turn, in the sense of the drive."""
     along = plan.mechanism.motion_parameter.instants(plan.path)
     turn = float(along[-1] - along[0])
@@ -153,7 +153,7 @@ def _counted(plan: PositionPlan, values: Array) -> Array:
 def _ticks(plan: PositionPlan) -> tuple[float, ...]:
     """Where the numbered positions are on the axis of the drive; after a turn comes one more, the first again."""
     parameter = plan.mechanism.motion_parameter
-    places = _counted(plan, parameter.instants(plan.positions))
+    places = _drive_progress(plan, parameter.instants(plan.positions))
     along = parameter.instants(plan.path)
     return (*places.tolist(), abs(float(along[-1] - along[0]))) if plan.closed else tuple(places.tolist())
 
@@ -163,7 +163,9 @@ def _over_cycle(
 ) -> tuple[Array, list[Array]]:
     """Places of the samples on the axis of the drive, and the variables there; a turn ends as it begins."""
     parts = (plan.path, plan.positions)
-    across = np.concatenate([_counted(plan, plan.mechanism.motion_parameter.instants(one)) for one in parts])
+    across = np.concatenate(
+        [_drive_progress(plan, plan.mechanism.motion_parameter.instants(one)) for one in parts]
+    )
     values = [
         np.concatenate([one[variable].sel({kind: name}).values for one in parts]) for variable in variables
     ]

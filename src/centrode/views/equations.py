@@ -20,10 +20,10 @@ from centrode.sheets.sheet import (
     Check,
     ExplainedSymbol,
     Formula,
-    LinearEquations,
     Paragraph,
     Section,
     Sheet,
+    SheetEquations,
     SymbolList,
 )
 from centrode.sheets.symbolic import (
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from centrode.equations.cofactors import CofactorExpansion
     from centrode.equations.derivation import Drivenness, Equations, PointVelocity
     from centrode.equations.instants import Instant, NumbersAtInstant, SolvedSystem
-    from centrode.equations.linear import Condition, GroupEquations, GroupSolution, Unknown
+    from centrode.equations.linear import GroupEquations, GroupSolution, LinearConstraint, Unknown
     from centrode.equations.symbols import Meaning
 
 Line: TypeAlias = tuple[Leaf, ...]
@@ -254,7 +254,7 @@ def _constraint_of(symbol: str, equations: Equations) -> str:
 # Constraints, systems and formulas.
 
 
-def _constraint(one: Condition) -> Line:
+def _constraint(one: LinearConstraint) -> Line:
     name = one.name.partition("(")[0]
     offset = one.name.startswith("n_") and bool(one.right)
     left = [_letter(name)] if name[:2] in ("x_", "y_") or offset else []
@@ -282,7 +282,7 @@ def _solution(solution: GroupSolution, *, first_step: bool) -> Iterator[Line | B
         yield FactoredFormula(formula_of(system.matrix[0][0] * Sum.letter(system.unknowns[0]))), right[0]
         return
     matrix = tuple(tuple(map(_entry, row)) for row in system.matrix)
-    yield LinearEquations(matrix, tuple(map(_letter, system.unknowns)), right)
+    yield SheetEquations(matrix, tuple(map(_letter, system.unknowns)), right)
     if system.determinant is None or system.numerators is None:
         text = Sentence("The determinants have too many terms to print; the system is solved numerically.")
         yield Paragraph(text)
@@ -347,7 +347,7 @@ def _entry(total: Sum) -> Leaf:
 def _normal_form(group: GroupEquations, explained: bool) -> Iterator[Line | Block]:
     """Rates as formulas; the letter of a determinant comes first unless Cramer's rule has `explained` it."""
     solution = group.velocities
-    if solution.system.determinant is not None and solution.lettered:
+    if solution.system.determinant is not None and solution.has_letter:
         delta = FactoredFormula(solution.system.determinant, differences_first=True)
         if not explained or len(solution.letters) == 1:
             yield _letter(solution.under), delta
@@ -405,7 +405,7 @@ def _velocity(velocity: PointVelocity) -> Iterator[Line]:
         yield _component(f"v_{point}z", velocity.z, velocity.closed_z)
         if velocity.x.size + velocity.y.size + velocity.z.size > MANY:
             return
-    square, speed = velocity.squared, Letter(0, f"v_{point}")
+    square, speed = velocity.squared_speed, Letter(0, f"v_{point}")
     if _is_square(square):
         yield _letter(speed), _root(square)
     elif square.size <= LONGEST_VELOCITY:
@@ -504,7 +504,7 @@ class _Numbers:
             velocities = [group.velocities for group in equations.groups]
             solutions = list(zip(velocities, instant.velocities, strict=True))
         for solution, solved in solutions:
-            yield from self.solved(solution, solved)
+            yield from self.solved_system(solution, solved)
         # what determinants have given is not given again by the normal form
         known = {letter for solution, _solved in solutions for letter in _given_by_determinants(solution)}
         for lines in (
@@ -534,7 +534,7 @@ class _Numbers:
         for one in self.equations.unknowns:
             yield _letter(one.letter), self.value(one.letter)
 
-    def solved(self, solution: GroupSolution, solved: SolvedSystem) -> Iterator[Block]:
+    def solved_system(self, solution: GroupSolution, solved: SolvedSystem) -> Iterator[Block]:
         """The system and its determinants."""
         system = solution.system
         if len(system.unknowns) == 1:
@@ -542,7 +542,7 @@ class _Numbers:
         largest = float(np.nanmax(np.abs(solved.matrix)))
         matrix = tuple(tuple(_beside(x, largest) for x in row) for row in solved.matrix.tolist())
         right = tuple(_beside(x, largest * self.fastest) for x in solved.right.tolist())
-        yield LinearEquations(matrix, tuple(map(_letter, system.unknowns)), right)
+        yield SheetEquations(matrix, tuple(map(_letter, system.unknowns)), right)
         if system.determinant is None or system.numerators is None:
             return
         size = float(np.nanmax(np.abs([solved.determinant, *solved.numerators])))

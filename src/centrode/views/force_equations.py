@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from centrode.dynamics.force_polygons.steps import (
     ClosedPolygon,
+    EquationOutcome,
     ForceLine,
     ForcesAlongGuide,
     MomentsOfGroup,
     MomentsOfLink,
-    Outcome,
+    MomentUnknown,
     Step,
-    Unknown,
 )
 from centrode.sheets.sheet import Block, Formula, Paragraph
 from centrode.sheets.texts import Counted, Expression, Factor, Joined, Leaf, Name, Number, Sentence, Text
@@ -43,7 +43,7 @@ def step_equations(step: Step, sentence: Text) -> Iterator[Block]:
     sentence : the step in words
     """
     match step:
-        case MomentsOfLink(link, about, Unknown() as unknown, terms, outcome):
+        case MomentsOfLink(link, about, MomentUnknown() as unknown, terms, outcome):
             yield Paragraph(
                 Sentence("Moments of link {link} about {point}:", link=Number(link), point=_joint(about))
             )
@@ -129,7 +129,9 @@ def force_symbol(symbol: str, *, vector: bool = False) -> Leaf:
     return Expression(notation) if place is None else Expression(notation, place=Name(place))
 
 
-def _moments(about: StaticJoint, unknown: Unknown, terms: Sequence[MomentTerm], outcome: Outcome) -> Formula:
+def _moments(
+    about: StaticJoint, unknown: MomentUnknown, terms: Sequence[MomentTerm], outcome: EquationOutcome
+) -> Formula:
     """The sum of moments about a joint, in symbols and in numbers, and what follows from it."""
     below = Name(about.name)
     first = force_symbol(unknown.symbol)
@@ -176,7 +178,7 @@ def _signed_sum(terms: Iterable[tuple[Leaf, bool]]) -> Leaf:
     return Expression(notation, **holes)
 
 
-def _outcome(outcome: Outcome) -> tuple[Leaf, Leaf]:
+def _outcome(outcome: EquationOutcome) -> tuple[Leaf, Leaf]:
     symbol = force_symbol(outcome.symbol, vector=outcome.magnitude)
     left = Expression("abs({force})", force=symbol) if outcome.magnitude else symbol
     return left, Number(outcome.value, outcome.unit)

@@ -15,17 +15,17 @@ from centrode.dynamics.force_polygons.steps import (
     AssurPoint,
     ClosedAlong,
     ClosedPolygon,
+    EquationOutcome,
     ForceLine,
     ForcesAlongGuide,
     JointReaction,
     MomentsOfBase,
     MomentsOfGroup,
     MomentsOfLink,
+    MomentUnknown,
     Neglect,
-    Outcome,
     SolvedTogether,
     Step,
-    Unknown,
 )
 from centrode.errors import Status
 from centrode.sheets.force_pages import GroupPage, LeverPage
@@ -254,7 +254,7 @@ def _joint(joint: StaticJoint) -> Text:
             return name
 
 
-def _moments(unknown: Unknown, terms: Sequence[MomentTerm], outcome: Outcome) -> Text:
+def _moments(unknown: MomentUnknown, terms: Sequence[MomentTerm], outcome: EquationOutcome) -> Text:
     """An equation of moments: "R34ᵗ·1.7 + 165.5 (G4) − 14.041 (MΦ4) = 0, R34ᵗ = -86.0431 N"."""
     known = [
         (Joined((_moment(abs(term.moment)), Name(f"({term.symbol})")), " "), term.moment < 0)
@@ -270,7 +270,7 @@ def _sum(first: Text, terms: Iterable[tuple[Text, bool]]) -> Text:
     return first
 
 
-def _unknown(unknown: Unknown) -> Text:
+def _unknown(unknown: MomentUnknown) -> Text:
     symbol = Name(unknown.symbol)
     if unknown.arm is None:
         return symbol
@@ -286,11 +286,11 @@ def _is_zero(left: Text) -> Text:
     return Joined((left, Number(0)), " = ")
 
 
-def _equation(left: Text, outcome: Outcome) -> Text:
+def _equation(left: Text, outcome: EquationOutcome) -> Text:
     return Joined((_is_zero(left), _outcome(outcome)))
 
 
-def _outcome(outcome: Outcome) -> Text:
+def _outcome(outcome: EquationOutcome) -> Text:
     symbol = f"|{outcome.symbol}|" if outcome.magnitude else outcome.symbol
     return Joined((Name(symbol), Number(outcome.value, outcome.unit)), " = ")
 

@@ -414,7 +414,7 @@ def _notes(results: GearPairResults) -> Iterator[Text]:
 def _outline(results: GearPairResults, profile: ToothProfile) -> OutlineSet:
     """All teeth of a wheel about its axis."""
     pieces = [
-        piece.on_layer("profile").moved(2 * math.pi * tooth / profile.teeth)
+        piece.on_layer("profile").moved_by(2 * math.pi * tooth / profile.teeth)
         for tooth in range(profile.teeth)
         for piece in whole_tooth(profile)
     ]
@@ -438,7 +438,7 @@ def mesh_parts(results: GearPairResults) -> tuple[list[OutlinePiece], list[Array
         for tooth in range(-shown, shown + 1 - number):
             angle = turn + half + tooth * step
             pieces += [
-                piece.on_layer(("profile", "shoe")[number]).moved(angle, centre)
+                piece.on_layer(("profile", "shoe")[number]).moved_by(angle, centre)
                 for piece in whole_tooth(profile)
             ]
         circles.append(_arc(centre, pair.wheels[number].working_pitch / 2, up, (shown + 0.5) * step))
@@ -479,7 +479,9 @@ def generation_parts(results: GearPairResults) -> tuple[list[OutlinePiece], tupl
     pair, profile = results.geometry, results.profiles[0]
     wheel, step = pair.wheels[0], 2 * math.pi / profile.teeth
     teeth = [
-        piece.on_layer("profile").moved(side * step / 2) for side in (-1, 1) for piece in whole_tooth(profile)
+        piece.on_layer("profile").moved_by(side * step / 2)
+        for side in (-1, 1)
+        for piece in whole_tooth(profile)
     ]
     # The rack meets the tips where it has rolled by about the angle of a tooth and a half.
     rolled = np.linspace(-1.0, 1.0, POSITIONS) * ROLLED * 2 * step

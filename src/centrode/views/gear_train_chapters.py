@@ -120,7 +120,7 @@ def _planetary(results: GearTrainResults, train: PlanetaryTrain) -> Iterator[Blo
         Sentence("Against the carrier the train is an ordinary one. By Willis' method its ratio is")
     )
     lines: list[Line] = [
-        ("u_0", Expression(letters), Expression(numbers, **_used(numbers, values)), Number(own)),
+        ("u_0", Expression(letters), Expression(numbers, **_used_letters(numbers, values)), Number(own)),
         ('u_(1 "H")', Expression("1 - u_0"), Number(float(train.sun_ratio))),
     ]
     if train.driver == "carrier":
@@ -153,7 +153,7 @@ def _planetary(results: GearTrainResults, train: PlanetaryTrain) -> Iterator[Blo
     yield from _efficiency(results, train)
 
 
-def _used(notation: str, values: dict[str, Leaf]) -> dict[str, Leaf]:
+def _used_letters(notation: str, values: dict[str, Leaf]) -> dict[str, Leaf]:
     return {name: value for name, value in values.items() if f"{{{name}}}" in notation}
 
 

@@ -61,18 +61,18 @@ def numbered_names(places: Array, shown: Array | None = None) -> Iterator[Geomet
             yield GeometryName(point_of(place), Number(number, digits="d"), dotted=shown is not None)
 
 
-def mirrored(drawing: GeometricDrawing) -> GeometricDrawing:
+def mirror_image(drawing: GeometricDrawing) -> GeometricDrawing:
     """The mirror image of a drawing: left and right exchanged, its texts as they are."""
     axes = np.array([-1.0, 1.0])
     return replace(
         drawing,
         lines=tuple(replace(line, places=line.places * axes) for line in drawing.lines),
-        circles=tuple(replace(circle, centre=_exchanged(circle.centre)) for circle in drawing.circles),
-        names=tuple(replace(name, place=_exchanged(name.place)) for name in drawing.names),
+        circles=tuple(replace(circle, centre=_exchanged_place(circle.centre)) for circle in drawing.circles),
+        names=tuple(replace(name, place=_exchanged_place(name.place)) for name in drawing.names),
         angles=tuple(
             replace(
                 angle,
-                apex=_exchanged(angle.apex),
+                apex=_exchanged_place(angle.apex),
                 first=math.pi - angle.first,
                 last=math.pi - angle.last,
             )
@@ -84,11 +84,13 @@ def mirrored(drawing: GeometricDrawing) -> GeometricDrawing:
 
 def _mirrored_frame(frame: GeometryFrame) -> GeometryFrame:
     """The same of hinges, a guide and the sense in which the body turns."""
-    guide = None if frame.guide is None else (_exchanged(frame.guide[0]), _exchanged(frame.guide[1]))
-    return GeometryFrame(tuple(map(_exchanged, frame.hinges)), guide, -frame.sense)
+    guide = (
+        None if frame.guide is None else (_exchanged_place(frame.guide[0]), _exchanged_place(frame.guide[1]))
+    )
+    return GeometryFrame(tuple(map(_exchanged_place, frame.hinges)), guide, -frame.sense)
 
 
-def _exchanged(place: tuple[float, float]) -> tuple[float, float]:
+def _exchanged_place(place: tuple[float, float]) -> tuple[float, float]:
     return -place[0], place[1]
 
 

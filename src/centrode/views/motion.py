@@ -103,7 +103,7 @@ def _facts(results: MotionResults) -> Iterator[Fact]:
     """Range, events, statuses and worst residual."""
     status = results.motion["status"].values
     yield Fact(Sentence("range"), _range(results))
-    if results.unreached:
+    if results.unreached_samples:
         yield Fact(Sentence("reached part"), reached_text(results))
     yield Fact(Sentence("limits"), _events(results, LIMIT))
     yield Fact(Sentence("change points"), _events(results, CHANGE_POINT))
@@ -440,7 +440,7 @@ def _plots_chapter(results: MotionResults, pictures: Mapping[str, Picture]) -> C
 
 def _reach(results: MotionResults) -> Iterator[Text]:
     """Which part of the motion a document shows where the mechanism locks."""
-    if results.unreached:
+    if results.unreached_samples:
         yield Sentence("tables and plots cover what is reached: {part}", part=reached_text(results))
 
 

@@ -52,7 +52,7 @@ def tables_chapter(results: MotionResults, shown: xarray.Dataset, head: Sequence
     whole = [_hinges_over_motion(results, rows)] if on_sphere else _over_motion(results, rows)
     title = (
         Sentence("The part of the motion that is reached")
-        if results.unreached
+        if results.unreached_samples
         else Sentence("The whole motion")
     )
     return Chapter(

@@ -51,7 +51,7 @@ def position_sections(equations: Equations) -> Iterator[Section]:
 
 def numbered_sections(equations: Equations) -> Iterator[Section]:
     """The same with the numbers of the first instant that is reached; the numbers put in as a detail."""
-    found = next(_reached(equations), None)
+    found = next(_reached_samples(equations), None)
     if found is None or not equations.position_functions.groups:
         yield from position_sections(equations)
         return
@@ -70,7 +70,7 @@ def numbered_sections(equations: Equations) -> Iterator[Section]:
         yield Section(Sentence("Spherical coordinates"), tuple(spherical))
 
 
-def _reached(equations: Equations) -> Iterator[tuple[int, Values]]:
+def _reached_samples(equations: Equations) -> Iterator[tuple[int, Values]]:
     """Samples at which the positions have numbers."""
     if isinstance(equations, PlacedEquations):
         for sample, values in enumerate(equations.place_values):

@@ -453,7 +453,12 @@ def _shares(links: Sequence[LinkMotion]) -> Iterator[tuple[Leaf, ...]]:
                 )
         if letters:
             left = index_symbol("J", one.link, "^*")
-            yield left, join_expressions(letters, " + "), join_expressions(terms, " + "), Number(one.reduced)
+            yield (
+                left,
+                join_expressions(letters, " + "),
+                join_expressions(terms, " + "),
+                Number(one.reduced_share),
+            )
 
 
 def _totals(here: xr.Dataset) -> Iterator[tuple[Leaf, ...]]:
@@ -476,7 +481,7 @@ def _table_of_loads(mechanism: Mechanism, here: xr.Dataset) -> Table:
 def _checks(here: xr.Dataset, links: Sequence[LinkMotion]) -> tuple[Check, Check]:
     """The sums over the links' own motions beside the reduction."""
     allowed = ROUNDINGS * float(np.finfo(float).eps)
-    inertia, slope = sum(one.reduced for one in links), sum(one.slope for one in links)
+    inertia, slope = sum(one.reduced_share for one in links), sum(one.slope for one in links)
     return (
         Check(
             Sentence("The reduced moment of inertia agrees with the sum over the links within {share}."),

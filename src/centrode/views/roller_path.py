@@ -10,7 +10,7 @@ import numpy as np
 
 from centrode.cams.roller_path import ends_of
 from centrode.quantities import QUANTITIES
-from centrode.sheets.outlines import PathDrawing, Ray
+from centrode.sheets.outlines import OutlineRay, PathDrawing
 from centrode.sheets.plots import AxisLabel, Curve, CurvePanel, Plot
 from centrode.sheets.sheet import (
     Chapter,
@@ -295,7 +295,7 @@ def _drawing(results: RollerPathResults) -> PathDrawing:
     )
 
 
-def _rays(results: RollerPathResults) -> Iterator[Ray]:
+def _rays(results: RollerPathResults) -> Iterator[OutlineRay]:
     """Rays at round angles, of a turn and more each once, with the normals of the samples nearest to them."""
     names = ("carrier_angle", "path_radius", "cam_pressure_angle")
     phi, radius, gamma = (results.dataset[name].values for name in names)
@@ -312,7 +312,7 @@ def _rays(results: RollerPathResults) -> Iterator[Ray]:
         turn, rho = phi[nearest], radius[nearest]
         place = rho * np.array([math.sin(turn), math.cos(turn)])
         normal = np.array([math.sin(turn - gamma[nearest]), math.cos(turn - gamma[nearest])])
-        yield Ray(Number(degrees, "deg", ".0f", unit_fixed=True), place, place - NORMAL * rho * normal)
+        yield OutlineRay(Number(degrees, "deg", ".0f", unit_fixed=True), place, place - NORMAL * rho * normal)
 
 
 # Chapters

@@ -53,7 +53,7 @@ from centrode.views.structure import GROUP_KINDS
 if TYPE_CHECKING:
     from centrode.analysis.redesign.repair import Change, Repair
     from centrode.analysis.rotatability.causes import Condition, Transmission
-    from centrode.analysis.rotatability.circuits import Branch
+    from centrode.analysis.rotatability.circuits import CircuitBranch
     from centrode.analysis.rotatability.rotatability import LimitFound, LinkTurning, Rotatability
     from centrode.analysis.rotatability.tours import Dwell, LinkStroke, StrokeExtreme
 
@@ -317,7 +317,7 @@ class _Turning:
         for branch in found.circuits[found.own]:
             yield Fact(NOTHING, self.branch(branch))
 
-    def branch(self, branch: Branch) -> Text:
+    def branch(self, branch: CircuitBranch) -> Text:
         """A branch by its sides, and from where to where it goes."""
         named = [Joined((Name(point), SIDES[word]), " ") for point, word in branch.sides.items()]
         sides: Text = Joined(named) if named else Sentence("no sides")

@@ -28,7 +28,7 @@ def sheet(results: SensitivityResults) -> Sheet:
         tables=Deferred(
             {
                 "sensitivity": lambda: derivatives_table(data),
-                **({"derivatives": lambda: _over_samples(data)} if any(_sampled(data)) else {}),
+                **({"derivatives": lambda: _over_samples(data)} if any(_sampled_flags(data)) else {}),
             }
         ),
     )
@@ -61,7 +61,7 @@ def _gradients(data: xarray.Dataset) -> list[tuple[str, Array]]:
     return found
 
 
-def _sampled(data: xarray.Dataset) -> Iterator[bool]:
+def _sampled_flags(data: xarray.Dataset) -> Iterator[bool]:
     return (slopes.ndim > 1 for _name, slopes in _gradients(data))
 
 

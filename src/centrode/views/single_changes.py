@@ -141,7 +141,10 @@ def changes_text(mechanism: Mechanism, dimensions: Sequence[Dimension], changes:
     """Changes of dimensions in words, one after the other."""
     pairs = zip(dimensions, changes, strict=True)
     return Joined(
-        [_changed(mechanism, one, change.before, change.after, change.unit) for one, change in pairs]
+        [
+            _changed_dimension(mechanism, one, change.before, change.after, change.unit)
+            for one, change in pairs
+        ]
     )
 
 
@@ -159,10 +162,10 @@ def repaired_blocks(proposed: ProposedRepair) -> Iterator[Block]:
 
 def change_text(mechanism: Mechanism, change: SingleChange, digits: str = "") -> Text:
     """A change in words: "link AB 92 mm long instead of 80 mm"."""
-    return _changed(mechanism, change.dimension, change.before, change.after, change.unit, digits)
+    return _changed_dimension(mechanism, change.dimension, change.before, change.after, change.unit, digits)
 
 
-def _changed(
+def _changed_dimension(
     mechanism: Mechanism, dimension: Dimension, before: float, after: float, unit: str, digits: str = ""
 ) -> Text:
     return CHANGES[_kind(mechanism, dimension)].fill(

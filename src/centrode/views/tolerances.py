@@ -31,7 +31,7 @@ from centrode.views.columns import drive_units
 
 if TYPE_CHECKING:
     from centrode.model.motion_parameter import MotionVariable
-    from centrode.tolerances.assembly_in_limits import Stop
+    from centrode.tolerances.assembly_in_limits import LimitStop
     from centrode.tolerances.results import OutputAccuracy, ToleranceResults
 
 Array: TypeAlias = NDArray[np.float64]
@@ -77,7 +77,7 @@ def sheet(results: ToleranceResults) -> Sheet:
                 **({"histogram": lambda: _histograms(results, single)} if single else {}),
             }
         ),
-        printed=tuple(_printed(results)),
+        printed=tuple(_printed_results(results)),
         chapters={"accuracy": _chapter(results, bool(sampled), bool(single))},
         failure=_failure(results),
         notes=(REST,) if _has_play(results) else (),
@@ -133,7 +133,7 @@ def _moves(results: ToleranceResults) -> Text:
     )
 
 
-def _stop(results: ToleranceResults, stop: Stop) -> Text:
+def _stop(results: ToleranceResults, stop: LimitStop) -> Text:
     share = Number(100.0 * stop.share, "%", ".4g")
     if math.isnan(stop.at):
         return Sentence("at {share} of the tolerances: it does not assemble", share=share)
@@ -361,7 +361,7 @@ def _play_table(results: ToleranceResults, caption: Text = NOTHING) -> Table:
     return Table(tuple(columns), caption)
 
 
-def _printed(results: ToleranceResults) -> Iterator[Section]:
+def _printed_results(results: ToleranceResults) -> Iterator[Section]:
     yield Section(Sentence("Deviations of the outputs"), (outputs_table(results),))
     yield Section(Sentence("Contributions to the variance"), (contributions_table(results),))
     if _has_play(results):

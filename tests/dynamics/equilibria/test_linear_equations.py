@@ -9,7 +9,7 @@ import pytest
 from mpmath import mp, mpf
 
 import centrode as ct
-from centrode.dynamics.equilibria.equilibrium_search import approached, settled
+from centrode.dynamics.equilibria.equilibrium_search import approached_positions, settled_equilibria
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.small_motions import small_motions
 from free_motions import DOUBLE_PENDULUM, FIVE_BAR
@@ -72,7 +72,7 @@ def test_stiffness_and_damping_are_those_of_differences(name: str) -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_eigenvalues_are_those_of_mpmath(name: str) -> None:
     loaded = loaded_mechanism(ct.parse_mechanism(CASES[name]).with_drives_held())
-    places = settled(loaded, approached(loaded, loaded.position.coordinates[None]))
+    places = settled_equilibria(loaded, approached_positions(loaded, loaded.position.coordinates[None]))
     (motions,) = small_motions(loaded, places)
     count = len(motions.mass)
     mass, damping, stiffness = (

@@ -53,7 +53,7 @@ def test_a_rod_rests_on_a_floor_on_both_sides():
 
 
 def test_a_chain_of_two_rods_on_a_floor_is_stable_where_its_first_rod_hangs():
-    """With sin a + sin b = -1.5 the energy is g (sin a - 0.75): cos a = 0 is its least value, cos b = 0 a greatest one."""
+    """With sin a + sin b = -1.5 the energy is g (sin a - 0.75): cos a = 0 is its least, cos b = 0 its greatest."""
     chain = ct.Mechanism(
         gravity=[0, -G],
         frame={"points": {"O": [0, 0]}},

@@ -39,7 +39,7 @@ def four_bar_of(names: tuple[str, ...], force: str = "2*x - 0.3*v") -> Parts:
 
 def texts_of(names: tuple[str, ...]) -> list[str]:
     problem = free_motion_of(mechanism(four_bar_of(names))).integration.problem
-    own = (*problem.parameters, *problem.carried)
+    own = (*problem.parameters, *problem.carried_names)
     graphs = (problem.of_rates, (TIME,)), (problem.of_closing, (TIME, STEP))
     return [
         function_text(graph, (*first, *own), is_complex)

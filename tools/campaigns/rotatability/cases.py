@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from centrode.errors import Status
 from centrode.kinematics import solve as solving
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.machine_code.link_rotation import LinkRotation
 from centrode.kinematics.machine_code.trace import trace_motion
 from centrode.kinematics.machine_code.variables import SCALE, centre_of, varied_of, winding_of
@@ -106,7 +106,7 @@ def drawn(seed: int, number: int) -> tuple[Kind, Values, tuple[float, float], Ev
     varied = varied_of(numbers, values)
     names = tuple(dict.fromkeys([*varied.names, SCALE]))
     screening = EventScreening(trace_motion(prepared, span, varied), span.parameter, names, (), "arrays")
-    mesh = screening.covered
+    mesh = screening.covered_range
     # two fifths all but fail, by 1e-1 to 1e-16
     near = random.random(LANES) < 0.4
     by = np.where(random.random(LANES) < 0.5, 1.0, -1.0) * 10.0 ** -random.uniform(1.0, 16.0, LANES)

@@ -174,7 +174,7 @@ def _aim(stage: ConstructionStage, group: Aim) -> tuple[list[str], Triangle | No
         stage.bases[group.block] = group.target
         stage.turns[group.block] = stage.turns[group.link]
         # the block turns with the link that it slides on
-        stage.points[group.sliding] = stage.carried(group.block, drawing.point(group.sliding))
+        stage.points[group.sliding] = stage.point_rate(group.block, drawing.point(group.sliding))
     return [first.equation(letter(stage), under), second.equation(letter(stage), under)], triangle
 
 

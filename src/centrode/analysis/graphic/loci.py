@@ -44,6 +44,7 @@ from centrode.structure.groups import (
     Arm,
     CylinderCircle,
     Group,
+    GuideStop,
     Locus,
     Meshed,
     Newton,
@@ -52,7 +53,6 @@ from centrode.structure.groups import (
     Rolled,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     Train,
 )
@@ -178,7 +178,7 @@ def _along(
     if stage.before is not None and on != FRAME and stage.before.turns[on] != 0.0:
         turned = stage.coriolis(on, at, velocity)
         legs = (RayLeg("coriolis", turned, f"{point}{under}", f"aᵏ_{point}{under}"),)
-    origin = stage.carried(on, at)
+    origin = stage.point_rate(on, at)
     if on != FRAME:
         # the image of the place under the point, drawn beside those of the points
         stage.hidden.setdefault(under, origin)
@@ -224,7 +224,7 @@ def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
         case Slot():
             direction = drawing.heading(carriage or "", drawing.numbers.direction[locus.guide])
             return carrying_ray(stage, carriage or "", locus.point, direction, locus.guide)
-        case Stop():
+        case GuideStop():
             return _driven(_along_guide(stage, locus), stage.driven[locus.drive])
         case Touch() | Rolloff():
             return _of_wheel(stage, locus)
@@ -232,7 +232,7 @@ def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
             assert_never(locus)
 
 
-def _along_guide(stage: ConstructionStage, locus: Rail | Stop) -> Ray:
+def _along_guide(stage: ConstructionStage, locus: Rail | GuideStop) -> Ray:
     """A point that slides along a guide of a known body."""
     drawing = stage.drawing
     direction = drawing.heading(locus.on, drawing.numbers.direction[locus.guide])
@@ -298,11 +298,11 @@ def _about_track(stage: ConstructionStage, locus: Touch | Rolloff, on: str, trac
     arm = drawing.arm(centre, drawing.point(wheel))
     # from the wheel's side the arm points backwards
     sense = -1.0 if locus.carried else 1.0
-    origin = stage.points[wheel] if locus.carried else stage.carried(on, centre)
+    origin = stage.points[wheel] if locus.carried else stage.point_rate(on, centre)
     name = f"{wheel}K"
     legs: tuple[RayLeg, ...] = ()
     if stage.before is not None:
-        apart = stage.before.points[wheel] - stage.before.carried(on, centre)
+        apart = stage.before.points[wheel] - stage.before.point_rate(on, centre)
         spin = dot(1j * arm, apart) / abs(arm) ** 2
         legs = (RayLeg("normal", -(spin**2) * sense * arm, name, f"aⁿ_{name} (∥ {name})"),)
     kind: Kind = "relative" if stage.order == 1 else "tangential"
@@ -356,7 +356,7 @@ def rolled_rate(stage: ConstructionStage, rolling: NoSlip) -> float:
     numbers, centre = drawing.numbers, drawing.point(rolling.centre)
     track = numbers.gearing.track[rolling.rolling]
     velocity = 0j if stage.before is None else stage.before.points[rolling.centre]
-    relative = stage.points[rolling.centre] - stage.carried(rolling.on, centre)
+    relative = stage.points[rolling.centre] - stage.point_rate(rolling.on, centre)
     # the body carries the place itself along, and turns what passes: neither is rolled
     relative -= stage.coriolis(rolling.on, centre, velocity)
     if isinstance(track, Straight):
@@ -543,7 +543,7 @@ def _off_guide(stage: ConstructionStage, guide: PointOnGuide) -> float:
     relative = (
         # what the guide's body gives, and Coriolis, are motion along with it: only across the guide it is a
         # misfit
-        stage.points[guide.point] - stage.carried(guide.on, at) - stage.coriolis(guide.on, at, velocity)
+        stage.points[guide.point] - stage.point_rate(guide.on, at) - stage.coriolis(guide.on, at, velocity)
     )
     return cross(heading, relative)
 

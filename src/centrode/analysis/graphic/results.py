@@ -13,7 +13,7 @@ from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 MOST_INSTANTS = 100
 

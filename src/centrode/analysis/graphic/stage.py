@@ -237,7 +237,7 @@ class ConstructionStage:
         """Normal part of `about`: 0 of velocities, -omega^2 arm of accelerations."""
         return 0j if self.before is None else -(self.before.turns[link] ** 2) * arm
 
-    def carried(self, link: str, at: complex) -> complex:
+    def point_rate(self, link: str, at: complex) -> complex:
         """Rate of the place of a link that lies at a place of the drawing."""
         if link == FRAME:
             return 0j
@@ -250,7 +250,7 @@ class ConstructionStage:
         if self.before is None or link == FRAME:
             return 0j
         # relative to the place of the link under what passes
-        return 2j * self.before.turns[link] * (velocity - self.before.carried(link, at))
+        return 2j * self.before.turns[link] * (velocity - self.before.point_rate(link, at))
 
     def read(self, length: float) -> float:
         """The length of an edge as it is read off the diagram."""

@@ -77,7 +77,7 @@ class KennedyStep:
 
 
 @dataclass(frozen=True)
-class Construction:
+class CentreConstruction:
     """Constructed centres of one position: `bodies` by number, `steps` in the order they were found.
 
     `mismatch` of a pair is the relative velocity left at its constructed centre, in the greatest velocity of
@@ -98,7 +98,7 @@ class Construction:
             _("there is no constructed centre of {first} and {second}").format(first=first, second=second),
         )
 
-    def needed(self, pairs: Sequence[Pair]) -> Construction:
+    def needed_steps(self, pairs: Sequence[Pair]) -> CentreConstruction:
         """The construction with those steps alone that lead to the centres of some pairs."""
         wanted: set[Pair] = {order_pair(pair) for pair in pairs}
         kept: list[KennedyStep] = []
@@ -388,7 +388,7 @@ UNSURE = 1e-6
 
 def construct_centres(
     motion: xr.Dataset, sample: int = 0, pairs: Sequence[tuple[str, str]] | None = None
-) -> Construction:
+) -> CentreConstruction:
     """Construct the instant centres at one sample of a motion, as on paper.
 
     Joints show the primary centres; the others follow from Aronhold's and Kennedy's theorem. Places only are
@@ -432,7 +432,7 @@ def construct_centres(
         )
     residual = float(motion["residual"][sample])
     construction = _Constructing(spots_of(everything.sample(sample)), residual).run()
-    return construction if wanted is None else construction.needed(wanted)
+    return construction if wanted is None else construction.needed_steps(wanted)
 
 
 class _Constructing:
@@ -447,7 +447,7 @@ class _Constructing:
         self.known: dict[Pair, ProjectivePoint | None] = {}  # None: at rest against each other
         self.steps: list[KennedyStep] = []
 
-    def run(self) -> Construction:
+    def run(self) -> CentreConstruction:
         """Find all centres."""
         for joint in joints_of(self.bodies.mechanism, self.bodies):
             self._see(joint)
@@ -466,7 +466,7 @@ class _Constructing:
                     self._note(pair, where, how, name, by)
             unknown = [pair for pair in unknown if pair not in self.known]
         mismatch = {step.pair: self._mismatch(step.pair) for step in self.steps}
-        return Construction(self.bodies.names, tuple(self.steps), mismatch)
+        return CentreConstruction(self.bodies.names, tuple(self.steps), mismatch)
 
     def _see(self, joint: PrimaryJoint) -> None:
         """Take in the centre that a joint shows."""

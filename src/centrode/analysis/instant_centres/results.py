@@ -12,7 +12,7 @@ from centrode.analysis.instant_centres.bodies import body_names
 from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.analysis.instant_centres.curvature import curvature
-from centrode.analysis.instant_centres.kennedy import MOST_BODIES, Construction, construct_centres
+from centrode.analysis.instant_centres.kennedy import MOST_BODIES, CentreConstruction, construct_centres
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import default_instants, motion
 from centrode.locale import _
@@ -44,7 +44,7 @@ class CentreResults:
     pairs: tuple[Names, ...] | None
     motion: xr.Dataset
     centres: xr.Dataset
-    constructions: tuple[Construction | None, ...]
+    constructions: tuple[CentreConstruction | None, ...]
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def results_of_centres(mechanism: Mechanism, centres: xr.Dataset) -> CentreResul
     return CentreResults(mechanism, pairs, course, centres, _constructions(mechanism, course))
 
 
-def _constructions(mechanism: Mechanism, course: xr.Dataset) -> tuple[Construction | None, ...]:
+def _constructions(mechanism: Mechanism, course: xr.Dataset) -> tuple[CentreConstruction | None, ...]:
     """Centres by Aronhold's and Kennedy's theorem at every sample that has velocities."""
     few = len(body_names(mechanism)) <= MOST_BODIES
     return tuple(

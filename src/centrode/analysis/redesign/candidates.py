@@ -388,7 +388,7 @@ def signs_at_start(
     signs = {
         index: np.full((size, 1), prepared.assembled.signs[index])
         for index, group in enumerate(groups)
-        if group.signed
+        if group.is_signed
     }
     # a side that the description states stays; initial angles decide only where they place
     hints: dict[int, dict[str, Number]] = {}
@@ -448,13 +448,13 @@ class _Clamped(FixedSigns):
 
 def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechanism:
     """The description with its assembly said by sides, and initial angles as they are with the new dimensions."""
-    groups = [group for group in prepared.structure.groups if group.signed]
+    groups = [group for group in prepared.structure.groups if group.is_signed]
     space = batch.kinematics.numbers.space
     # with other dimensions the initial angles of before may be nearer to the other assembly: sides are said outright
     sides: dict[str, Any] = dict(mechanism.assembly.sides)
     for index, group in enumerate(prepared.structure.groups):
         # a side stated under either name of the group stays
-        if group.signed and not any(name in sides for name in side_names(group)):
+        if group.is_signed and not any(name in sides for name in side_names(group)):
             sides[side_names(group)[0]] = side_words(space, group)[
                 0 if prepared.assembled.signs[index] > 0 else 1
             ]

@@ -111,7 +111,7 @@ def propose(found: SingleChanges) -> ProposedRepair | None:
         return proposed
     if best is not None and several.least_transmission_angle == kept and not places_anew(found.mechanism):
         return proposed
-    return _rounded(several, found.greatest_change)
+    return _rounded_repair(several, found.greatest_change)
 
 
 def _single(found: SingleChanges) -> ProposedRepair:
@@ -154,7 +154,7 @@ def _angles(mechanism: Mechanism) -> list[str]:
     return [one.path for one in dimensions_of_design(mechanism) if one.kind == "angle"]
 
 
-def _rounded(several: Repair, greatest_change: float | None) -> ProposedRepair | None:
+def _rounded_repair(several: Repair, greatest_change: float | None) -> ProposedRepair | None:
     """The same change in as few digits as keep the transmission angle."""
     mechanism = several.mechanism
     prepared = ready(mechanism)
@@ -165,11 +165,11 @@ def _rounded(several: Repair, greatest_change: float | None) -> ProposedRepair |
             mechanism, {change.path: value for change, value in zip(several.changes, values, strict=True)}
         )
         repaired = replace_placed(repaired) if places_anew(mechanism) else repaired
-        made = _verified(several, repaired, values)
+        made = _verified_repair(several, repaired, values)
         if made is not None:
             return made
     assert several.repaired is not None
-    return _verified(several, several.repaired, [change.after for change in several.changes])
+    return _verified_repair(several, several.repaired, [change.after for change in several.changes])
 
 
 def _roundings(several: Repair, candidates: Candidates, *, bounded: bool) -> Iterator[list[float]]:
@@ -213,7 +213,7 @@ def _choices(change: Change, several: Repair, finer: int) -> list[float]:
     return values
 
 
-def _verified(several: Repair, repaired: Mechanism, values: Sequence[float]) -> ProposedRepair | None:
+def _verified_repair(several: Repair, repaired: Mechanism, values: Sequence[float]) -> ProposedRepair | None:
     """The proposal, assembled at every sample and analysed; None where it does not keep the angle."""
     try:
         after, course = rotatability(repaired), motion(repaired)

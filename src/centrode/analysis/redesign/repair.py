@@ -34,7 +34,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, Newton
 

@@ -414,14 +414,14 @@ class DimensionSearch:
             reached = float(self._least(np.array([change]), FINE)[0])
             if reached < sin(margin) ** 2 * (1.0 - NO_LENGTH):
                 continue
-            repaired = self._repaired(value, change)
+            repaired = self._repaired_mechanism(value, change)
             verified = None if repaired is None else _angle_and_residual(repaired, self.required, reached)
             if repaired is not None and verified is not None:
                 numbers = one.before, value, one.before + bound * one.scale, abs(change)
                 return SingleChange(self.dimension, one.unit, *numbers, *verified, repaired)
         return None
 
-    def _repaired(self, value: float, change: float) -> Mechanism | None:
+    def _repaired_mechanism(self, value: float, change: float) -> Mechanism | None:
         try:
             redesigned = with_value(self.candidates.mechanism(np.array([change])), self.varying.path, value)
         except CentrodeError:

@@ -26,6 +26,7 @@ from centrode.structure.groups import (
     Aim,
     CylinderCircle,
     Group,
+    GuideStop,
     Locus,
     Meet,
     Newton,
@@ -34,7 +35,6 @@ from centrode.structure.groups import (
     Rod,
     Rolloff,
     Slot,
-    Stop,
     Touch,
     Train,
     TurnedLink,
@@ -258,7 +258,7 @@ def body_of(locus: Locus) -> tuple[Tracer, str]:
             return Tracer.LINK, link
         case CylinderCircle(drive=drive):
             return Tracer.CYLINDER, drive
-        case Rail(guide=guide) | Slot(guide=guide) | Stop(guide=guide):
+        case Rail(guide=guide) | Slot(guide=guide) | GuideStop(guide=guide):
             return Tracer.GUIDE, guide
         case Touch() | Rolloff():
             return Tracer.WHEEL, ""
@@ -279,7 +279,7 @@ def bearing_of_locus(
             return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
         case Slot():
             return bearing_of(mechanism, carriage, numbers.direction[locus.guide])
-        case Stop():
+        case GuideStop():
             x, y = numbers.direction[locus.guide]
             # a stop is the line across the guide at the displacement that a drive gives
             return bearing_of(mechanism, locus.on, (-y, x))
@@ -348,7 +348,7 @@ def _of_rod_and_line(place: _Place, group: Meet) -> tuple[Cause, Condition]:
         on = getattr(line, "guide", "")
         return Cause(CauseKind.ROD_SQUARE, bodies), f"cos(angle between {bodies[0][1]} and guide {on}) = 0"
     bearings = _bearings(place, group)
-    kind = CauseKind.ROD_ALONG if isinstance(line, Stop) else CauseKind.ROD_SQUARE
+    kind = CauseKind.ROD_ALONG if isinstance(line, GuideStop) else CauseKind.ROD_SQUARE
     return Cause(kind, bodies), HIGHER if bearings is None else square(*bearings)
 
 

@@ -24,7 +24,7 @@ from centrode.kinematics.assembly_mode import side_names, side_words
 from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.path import OFF_GRID
-from centrode.kinematics.plan_evaluation import Branches, Event
+from centrode.kinematics.plan_evaluation import Branches, RadicandZero
 from centrode.kinematics.preparation import Ready
 from centrode.locale import mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
@@ -77,7 +77,7 @@ class Combinations:
             for row, cut in zip(self.closed, self._limit_cells(), strict=True)
         ]
 
-    def _follow_combinations(self) -> tuple[Mask, list[Event]]:
+    def _follow_combinations(self) -> tuple[Mask, list[RadicandZero]]:
         """Where every combination closes at the nodes, and all events."""
         tour = self.tour
         lanes = len(self.signs)
@@ -98,7 +98,7 @@ class Combinations:
             closed &= np.isfinite(np.broadcast_to(x, (lanes, count + len(ends)))[:, :count])
         return closed, branches.events
 
-    def cells(self, event: Event) -> tuple[int, int]:
+    def cells(self, event: RadicandZero) -> tuple[int, int]:
         """Nodes before and behind an event."""
         before = int(np.searchsorted(self.nodes, event.at, side="right")) - 1
         behind = before + 1
@@ -158,7 +158,7 @@ MOST_DYADS = 10
 
 
 @dataclass(frozen=True)
-class Branch:
+class CircuitBranch:
     """A stretch of the drive between limits on which the mechanism closes with the same sides.
 
     Attributes
@@ -183,7 +183,7 @@ class Circuits:
     joined : whether circuits hang together at change points only
     """
 
-    circuits: tuple[tuple[Branch, ...], ...]
+    circuits: tuple[tuple[CircuitBranch, ...], ...]
     own: int
     joined: bool
 
@@ -212,18 +212,18 @@ class Uncounted(Enum):
 def circuits_of(tour: DriveSweep) -> tuple[Circuits | None, Uncounted | None]:
     """Circuits of a mechanism for a drive, or why they are not counted."""
     structure, mechanism = tour.prepared.structure, tour.prepared.mechanism
-    signed = [index for index, group in enumerate(structure.groups) if group.signed]
+    signed = [index for index, group in enumerate(structure.groups) if group.is_signed]
     if any(isinstance(group, Newton) for group in structure.groups):
         return None, Uncounted.HIGHER_CLASS
     if mechanism.gears or mechanism.rolling:
         return None, Uncounted.WHEELS
     if len(signed) > MOST_DYADS:
         return None, Uncounted.TOO_MANY
-    circuits = _Search(tour, signed).run()
+    circuits = _CircuitSearch(tour, signed).run()
     return circuits, None if circuits else Uncounted.STANDING
 
 
-class _Search:
+class _CircuitSearch:
     """Which stretches of the combinations of signs hang together."""
 
     def __init__(self, tour: DriveSweep, signed: list[int]) -> None:
@@ -254,7 +254,7 @@ class _Search:
                     self._join(one, other)
         return self._circuits(own, joined)
 
-    def _hidden(self, event: Event, node: int) -> bool:
+    def _hidden(self, event: RadicandZero, node: int) -> bool:
         """Whether another limit lies between a node and an event in its cell."""
         cells = self.combinations.cells(event)
         way = 1.0 if node == cells[0] else -1.0
@@ -262,11 +262,11 @@ class _Search:
         # by the shortest way round: an event in the last cell may be given a turn off
         return any(way * remainder(event.at - at, self.combinations.length) > 0.0 for at in others)
 
-    def _nearest(self) -> list[Event]:
+    def _nearest(self) -> list[RadicandZero]:
         """Limits first, so that change points join only what limits do not."""
         return sorted(self.combinations.events, key=lambda event: event.kind != "limit")
 
-    def _partner(self, event: Event) -> int:
+    def _partner(self, event: RadicandZero) -> int:
         """The combination that differs in the sign of one group."""
         # product() has the last group in the lowest bit
         place = len(self.signed) - 1 - self.signed.index(event.group)
@@ -288,7 +288,7 @@ class _Search:
             self.parent[max(one, other)] = min(one, other)
 
     def _circuits(self, own: tuple[int, int], joined: bool) -> Circuits:
-        branches: dict[tuple[int, int], list[Branch]] = {}
+        branches: dict[tuple[int, int], list[CircuitBranch]] = {}
         for k, runs in enumerate(self.combinations.runs):
             for run in range(int(runs.max(initial=-1)) + 1):
                 # every run is given its root here: runs that nothing joined are circuits of their own
@@ -317,7 +317,7 @@ class _Search:
         )
         return reached
 
-    def _branch(self, lane: int, run: int) -> Branch:
+    def _branch(self, lane: int, run: int) -> CircuitBranch:
         groups = self.tour.prepared.structure.groups
         space = self.tour.continuation.kinematics.numbers.space
         sides = {
@@ -329,14 +329,14 @@ class _Search:
         inside = np.nonzero(self.combinations.runs[lane] == run)[0]
         limits = [e for e in self.combinations.events if e.lane == lane and e.kind == "limit"]
         if not limits and len(inside) == len(self.combinations.nodes):
-            return Branch(sides, None, None)
+            return CircuitBranch(sides, None, None)
         first, last = self._edges(inside)
         low, high = self._edge(limits, first, -1), self._edge(limits, last, 0)
         if low is not None and high is not None and low > high:
             low -= tau  # it runs through the end of the turn
         if low is not None and high is not None and self.tour.angular and self.tour.initial <= high - tau:
             low, high = low - tau, high - tau  # the turn of the initial position, where it is on the branch
-        return Branch(sides, low, high)
+        return CircuitBranch(sides, low, high)
 
     def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:
         """First and last node of a run that may go on over the end of the nodes."""
@@ -346,7 +346,7 @@ class _Search:
             return int(inside[gaps[-1] + 1]), int(inside[gaps[0]])
         return int(inside[0]), int(inside[-1])
 
-    def _edge(self, limits: list[Event], node: int, which: int) -> float | None:
+    def _edge(self, limits: list[RadicandZero], node: int, which: int) -> float | None:
         """The limit in the cell before a node (which = -1) or behind it (0), the nearest to the node."""
         before = node - 1 if which == -1 else node
         cell = before % len(self.combinations.nodes) if self.tour.angular else before

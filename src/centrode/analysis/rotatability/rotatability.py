@@ -37,13 +37,13 @@ from centrode.analysis.rotatability.tours import (
     tour_of,
     watched_members,
 )
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.assur import name_of
 
 
@@ -250,7 +250,7 @@ def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
     return tuple(limits)
 
 
-def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFound:
+def _limit(prepared: Ready, tour: DriveSweep, event: RadicandZero, end: str) -> LimitFound:
     group = prepared.structure.groups[event.group]
     side: Literal["low", "high"] = "low" if end == "low" else "high"
     return LimitFound(

@@ -17,7 +17,7 @@ from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import JETS, OFF_GRID
-from centrode.kinematics.plan_evaluation import Event, rotor_of_angle, slide_of
+from centrode.kinematics.plan_evaluation import RadicandZero, rotor_of_angle, slide_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import start_of
 from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
@@ -150,7 +150,7 @@ class DriveSweep:
         coordinates = [x.value if isinstance(x, Jet) else x for name in moving for x in at.points[name]]
         return np.array([np.broadcast_to(x, (1, len(values)))[0] for x in coordinates])
 
-    def events(self, kind: str) -> list[Event]:
+    def events(self, kind: str) -> list[RadicandZero]:
         """Events of a kind within the stretch, each once, in the drive's order."""
         first, last = self.span
         events = [e for e in self.continuation.branches.events if e.kind == kind]
@@ -695,7 +695,7 @@ def _goes_to_infinity(tour: DriveSweep, limit: float) -> bool:
     events = tour.continuation.branches.events
     at_limit = [groups[event.group] for event in events if event.kind == "limit" and event.at == limit]
     # a dyad of two lines has no sign: its limit is a divisor that vanishes
-    return any(isinstance(group, Meet) and not group.signed for group in at_limit)
+    return any(isinstance(group, Meet) and not group.is_signed for group in at_limit)
 
 
 def _ways(

@@ -15,11 +15,11 @@ from centrode.cams.followers.geometry import (
     Array,
     ContactMotion,
     ContactPoint,
-    Corner,
     Face,
     FollowerCam,
     FollowerContact,
     Guidance,
+    LiftCorner,
     Point,
     Translating,
     oscillating_face,
@@ -224,7 +224,7 @@ def exact_margin(cam: FollowerCam, layout: FollowerLayout, kept: Admissible) -> 
     return Margin(-math.inf, sharp[0], "curvature") if sharp else found
 
 
-def breaks(corner: Corner, layout: FollowerLayout, kept: Admissible) -> bool:
+def breaks(corner: LiftCorner, layout: FollowerLayout, kept: Admissible) -> bool:
     """Whether a corner leaves the profile undercut, or with a sharp edge where a radius of curvature is asked for."""
     return corner.undercuts(layout.touch.roller) or (corner.turn > 0.0 and kept.bend > 0.0)
 

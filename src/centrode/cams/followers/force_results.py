@@ -147,7 +147,7 @@ def vanishing_push(forces: FollowerForces, burden: Burden, speed: float) -> tupl
     """
     motion = forces.body.motion
     least = least_push(motion, burden, speed).value
-    return abs(least), float(np.abs(burden.needed(motion.lift(TURN, 2), speed)).max())
+    return abs(least), float(np.abs(burden.required_effort(motion.lift(TURN, 2), speed)).max())
 
 
 def strip_loads_difference(forces: FollowerForces) -> float:

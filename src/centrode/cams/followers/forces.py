@@ -72,7 +72,7 @@ class Burden:
         """What presses on the cam while nothing accelerates."""
         return self.preload + self.load + self.stiffness * lift
 
-    def needed(self, rows: Array, speed: float) -> Array:
+    def required_effort(self, rows: Array, speed: float) -> Array:
         """What the cam has to give along the motion.
 
         Parameters
@@ -163,7 +163,7 @@ def least_push(motion: Lifting, burden: Burden, speed: float) -> ForceExtreme:
     drops = slope_drops(motion) if burden.inertia and speed else []
     if drops:
         return ForceExtreme(-math.inf, drops[0])
-    return least(motion, lambda rows: burden.needed(rows, speed))
+    return least(motion, lambda rows: burden.required_effort(rows, speed))
 
 
 def jump_speed(motion: Lifting, burden: Burden) -> ForceExtreme:
@@ -212,7 +212,7 @@ def stiffness_needed(motion: Lifting, burden: Burden, speed: float, push: float 
     high = greatest(motion, lambda rows: np.abs(rows[0])).value
 
     def lacking(rows: Array) -> Array:
-        return push - plain.needed(rows, speed)
+        return push - plain.required_effort(rows, speed)
 
     def when_down(rows: Array) -> Array:
         return np.where(rows[0] <= LOWEST * high, lacking(rows), np.nan)
@@ -460,7 +460,7 @@ class FollowerForces:
     def at(self, phi: Array) -> ActingForces:
         """Forces at angles (n) [rad]."""
         rows = self.body.motion.lift(phi, 2)
-        push = self.burden.needed(rows, self.speed)
+        push = self.burden.required_effort(rows, self.speed)
         met = meeting_of(self.body, rows)
         kept = push if self.led else np.where(push >= 0, push, np.nan)
         force = met.normal_force(kept, self.friction)
@@ -477,12 +477,12 @@ class FollowerForces:
     @cached_property
     def greatest_normal(self) -> ForceExtreme:
         """The greatest normal force [N] and where [rad]; infinite where friction locks."""
-        return self.locked or self._greatest(lambda one: np.abs(one.normal))
+        return self.self_locking or self._greatest(lambda one: np.abs(one.normal))
 
     @cached_property
     def greatest_torque(self) -> ForceExtreme:
         """The greatest torque [N m] and where [rad]; infinite where friction locks."""
-        return self.locked or self._greatest(lambda one: one.torque)
+        return self.self_locking or self._greatest(lambda one: one.torque)
 
     @cached_property
     def least_torque(self) -> ForceExtreme:
@@ -498,17 +498,17 @@ class FollowerForces:
         """
         if self.width is None or self.modulus is None or self.body.touch.roller == 0.0 or self.body.undercuts:
             return ForceExtreme(math.nan, math.nan)
-        return self.locked or self._greatest(lambda one: _pressure(one.strip, one.phi))
+        return self.self_locking or self._greatest(lambda one: _pressure(one.strip, one.phi))
 
     @cached_property
-    def locked(self) -> ForceExtreme | None:
+    def self_locking(self) -> ForceExtreme | None:
         """An infinite force, and where [rad] friction holds the follower fastest; None where it moves all the way."""
         if not self.friction:
             return None
 
         def held(phi: Array) -> Array:
             rows = self.body.motion.lift(phi, 2)
-            push = self.burden.needed(rows, self.speed)
+            push = self.burden.required_effort(rows, self.speed)
             share = meeting_of(self.body, rows).share(push, self.friction)
             return np.where((push > 0) | self.led, -share, np.nan)
 

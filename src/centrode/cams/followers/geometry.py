@@ -25,7 +25,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import Extremes, Function, extremes, roots
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 if TYPE_CHECKING:
     from centrode.model.follower_cam import PlateCam
@@ -374,7 +374,7 @@ WATCHED = {
 
 
 @dataclass(frozen=True)
-class Corner:
+class LiftCorner:
     """A joint of the motion at which the speed of the lift jumps.
 
     Attributes
@@ -437,19 +437,19 @@ class FollowerCam(PrintsSummary):
         return np.stack([x * cosine - y * sine, y * cosine + x * sine], axis=-1)
 
     @cached_property
-    def corners(self) -> tuple[Corner, ...]:
+    def corners(self) -> tuple[LiftCorner, ...]:
         """Joints at which the speed of the lift jumps, growing."""
         found = (self._corner(at) for at in self.edges[:-1])
         return tuple(one for one in found if one is not None)
 
-    def _corner(self, at: float) -> Corner | None:
+    def _corner(self, at: float) -> LiftCorner | None:
         before = inside(0.0, self.edges[-1] if at == self.edges[0] else at)[1]
         sides = self.contact(np.array([before, at]))
         if isinstance(self.touch, Face):
             step = float(np.sum((sides.place[1] - sides.place[0]) * sides.tangent[1]))
-            return Corner(at, 0.0, step) if abs(step) > KINK * self.base_radius else None
+            return LiftCorner(at, 0.0, step) if abs(step) > KINK * self.base_radius else None
         turn = self.sense * math.remainder(sides.normal_angle[1] - sides.normal_angle[0], math.tau)
-        return Corner(at, turn) if abs(turn) > KINK else None
+        return LiftCorner(at, turn) if abs(turn) > KINK else None
 
     @cached_property
     def undercuts(self) -> list[Undercut]:

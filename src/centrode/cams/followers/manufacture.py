@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from centrode.cams.followers.base_circle import follower_cam
-from centrode.cams.followers.geometry import Array, Corner, Face, FollowerCam, FollowerContact
+from centrode.cams.followers.geometry import Array, Face, FollowerCam, FollowerContact, LiftCorner
 from centrode.cams.nodes import inside
 from centrode.cams.profiles import Layer
 from centrode.errors import InputError
@@ -165,7 +165,7 @@ def follower_outlines(
     return found
 
 
-def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -> Iterator[OutlinePiece]:
+def _corner(cam: FollowerCam, corner: LiftCorner, layer: _Layer, tolerance: float) -> Iterator[OutlinePiece]:
     """What joins both sides of a corner, where they part."""
     before = _before(cam, corner.at)
     if corner.step > 0.0:

@@ -26,7 +26,7 @@ from centrode.model.follower_cam import PlateCam
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
 from centrode.numerics.search import Extremes, extremes
 from centrode.quantities import QUANTITIES
 from centrode.version import __version__

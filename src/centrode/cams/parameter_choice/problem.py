@@ -209,7 +209,7 @@ FLATTEST = 1e-6
 
 
 @dataclass(frozen=True)
-class Measure:
+class PathMeasure:
     """A number that a path has at each angle, or as a whole.
 
     Attributes
@@ -302,21 +302,21 @@ def _zero(tried: BatchPaths) -> slice:
 
 
 _ALL = (
-    Measure("stress", mark("contact stress"), "Pa", _stress),
-    Measure("pressure_angle", mark("pressure angle"), "rad", _pressure_angle),
-    Measure("size", mark("radius of the roller's path"), "m", _size),
-    Measure("lift", mark("lift"), "m", _lift, least=True, whole=True),
-    Measure("gap", mark("gap between prints"), "m", _gap, least=True, whole=True),
-    Measure("step", mark("step length"), "m", _step, least=True, whole=True),
+    PathMeasure("stress", mark("contact stress"), "Pa", _stress),
+    PathMeasure("pressure_angle", mark("pressure angle"), "rad", _pressure_angle),
+    PathMeasure("size", mark("radius of the roller's path"), "m", _size),
+    PathMeasure("lift", mark("lift"), "m", _lift, least=True, whole=True),
+    PathMeasure("gap", mark("gap between prints"), "m", _gap, least=True, whole=True),
+    PathMeasure("step", mark("step length"), "m", _step, least=True, whole=True),
 )
 
-MEASURES: Mapping[str, Measure] = {measure.name: measure for measure in _ALL}
+MEASURES: Mapping[str, PathMeasure] = {measure.name: measure for measure in _ALL}
 """What may be bounded or be made best, by its name."""
 
-ALWAYS: Mapping[str, tuple[Measure, float]] = {
-    "sharp": (Measure("sharp", "", "1", _sharp), BLUNT),
-    "flat": (Measure("flat", "", "1", _flat, least=True), FLATTEST),
-    "steep": (Measure("steep", "", "rad", _pressure_angle), 0.95 * STEEPEST),
+ALWAYS: Mapping[str, tuple[PathMeasure, float]] = {
+    "sharp": (PathMeasure("sharp", "", "1", _sharp), BLUNT),
+    "flat": (PathMeasure("flat", "", "1", _flat, least=True), FLATTEST),
+    "steep": (PathMeasure("steep", "", "rad", _pressure_angle), 0.95 * STEEPEST),
 }
 """Bounds of every design: no cusp, a path that bends one way, a follower that does not jam."""
 
@@ -389,7 +389,7 @@ class ChoiceProblem:
     _known: tuple[bytes, dict[str, Array], dict[str, Array]] | None = field(default=None, repr=False)
 
     @property
-    def limits(self) -> dict[str, tuple[Measure, float]]:
+    def limits(self) -> dict[str, tuple[PathMeasure, float]]:
         """Measure and bound of every constraint, those of every design included."""
         asked = {name: (MEASURES[name], bound) for name, bound in self.bounds.items()}
         return {**ALWAYS, **asked}
@@ -442,7 +442,7 @@ class ChoiceProblem:
         }
 
     @property
-    def _measures(self) -> dict[str, Measure]:
+    def _measures(self) -> dict[str, PathMeasure]:
         return {
             self.best: MEASURES[self.best],
             **{name: measure for name, (measure, _bound) in self.limits.items()},

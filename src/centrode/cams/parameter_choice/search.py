@@ -19,8 +19,8 @@ from centrode.cams.parameter_choice.problem import (
     BatchPaths,
     ChoiceProblem,
     Family,
-    Measure,
     Mesh,
+    PathMeasure,
     PathTrial,
 )
 from centrode.cams.path_series import law_of, path_of
@@ -30,7 +30,7 @@ from centrode.model.cam import CONSTANT, MEASURED, OF_WHEELS, POINT, Cam, vary_c
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.examples.catalogue import CamSource, cam_of
 from centrode.model.reading import FrozenMap
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
 #
@@ -237,7 +237,7 @@ class JudgedDesign:
     angle: float
     bound: float | None = None
 
-    def relative_miss(self, measure: Measure) -> float:
+    def relative_miss(self, measure: PathMeasure) -> float:
         """By which part of the bound it is missed; 0 where it is kept."""
         if self.bound is None:
             return 0.0

@@ -44,7 +44,7 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 To: TypeAlias = Literal["full", "least", "fraction"]
 KINDS = get_args(To)

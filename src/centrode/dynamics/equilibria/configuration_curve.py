@@ -111,7 +111,7 @@ def _walk(
     place, along, step, passed = begin, tangent, STEP, 0
     while len(found) < MOST_STEPS:
         longest = float(np.max(np.abs(along / loaded.units)))
-        ahead = loaded.closed(place + along * (step / longest))
+        ahead = loaded.closed_coordinates(place + along * (step / longest))
         moved = np.max(np.abs((ahead - place) / loaded.units))
         turned = _tangent(loaded, ahead, along) if np.isfinite(moved) else along
         straight = float(np.dot(turned / loaded.units, along / loaded.units))

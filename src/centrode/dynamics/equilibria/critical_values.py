@@ -20,7 +20,7 @@ from numpy.polynomial import Chebyshev
 from scipy.optimize import brentq
 
 from centrode.dynamics.equilibria.configuration_curve import repeats_with_position
-from centrode.dynamics.equilibria.equilibrium_search import settled
+from centrode.dynamics.equilibria.equilibrium_search import settled_equilibria
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
 from centrode.errors import NotComputedYet
@@ -79,7 +79,7 @@ class EquilibriumBranch:
 
 
 @dataclass(frozen=True)
-class NumberRange:
+class ContinuationNumber:
     """A number of a mechanism that runs through a range, and what the equations make of it.
 
     Attributes
@@ -116,7 +116,7 @@ class NumberRange:
 
 def number_range(
     made: Callable[[float], LoadedMechanism], low: float, high: float, where: str
-) -> NumberRange:
+) -> ContinuationNumber:
     """A number that runs from one value to another.
 
     Parameters
@@ -149,14 +149,14 @@ def number_range(
         fitted = Chebyshev.fit(nodes, along, DEGREE, domain=[low, high])
         coefficients = np.where(np.abs(fitted.coef) > 1e-15 * scale, fitted.coef, 0.0)
         series[name] = Chebyshev(np.trim_zeros(coefficients, "b"), [low, high])
-    found = NumberRange(loaded, low, high, series)
+    found = ContinuationNumber(loaded, low, high, series)
     for share in (0.137, 0.618):
         _check_series(found, made, low + share * (high - low), where)
     return found
 
 
 def _check_series(
-    found: NumberRange, made: Callable[[float], LoadedMechanism], value: float, where: str
+    found: ContinuationNumber, made: Callable[[float], LoadedMechanism], value: float, where: str
 ) -> None:
     """Refuse a number that the numbers of the equations do not tell all about."""
     own, place = made(value), found.loaded.position.coordinates
@@ -183,7 +183,7 @@ class _Point:
 class _Follower:
     """Steps along the equilibria of one mechanism."""
 
-    def __init__(self, along: NumberRange) -> None:
+    def __init__(self, along: ContinuationNumber) -> None:
         self.along, self.loaded = along, along.loaded
         self.units = np.append(self.loaded.units, along.unit)
         angles = [one.kind == "angle" for one in self.loaded.coordinates]
@@ -225,11 +225,11 @@ class _Follower:
         along = along / np.linalg.norm(along / self.units)
         return found, along if np.dot(along / self.units, before / self.units) >= 0.0 else -along
 
-    def corrected(self, guess: Array, tangent: Array) -> Array | None:
+    def corrected_equilibrium(self, guess: Array, tangent: Array) -> Array | None:
         """The equilibrium (coordinates and number) in the plane through a guess square to the tangent."""
         here, scaled = guess.copy(), tangent / self.units
         for _step in range(CORRECTIONS):
-            place = self.loaded.closed(here[:-1], self.along.numbers(here[-1]))
+            place = self.loaded.closed_coordinates(here[:-1], self.along.numbers(here[-1]))
             if not np.isfinite(place[0]):
                 return None
             here = np.append(place, here[-1])
@@ -242,7 +242,9 @@ class _Follower:
                 return None
             here = here + step
             if size < CORRECTED:
-                return np.append(self.loaded.closed(here[:-1], self.along.numbers(here[-1])), here[-1])
+                return np.append(
+                    self.loaded.closed_coordinates(here[:-1], self.along.numbers(here[-1])), here[-1]
+                )
         return here if size < 1e-9 else None
 
     def point(self, here: Array, before: Array) -> _Point:
@@ -253,7 +255,7 @@ class _Follower:
     def ahead(self, point: _Point, step: float) -> _Point | None:
         """The point a step further on; None where it is not reached smoothly."""
         whole = np.append(point.place, point.value)
-        here = self.corrected(whole + step * point.tangent, point.tangent)
+        here = self.corrected_equilibrium(whole + step * point.tangent, point.tangent)
         if here is None or not np.all(np.isfinite(here)):
             return None
         moved = float(np.linalg.norm((here - whole) / self.units))
@@ -267,7 +269,7 @@ class _Follower:
         return small_motions(self.loaded, point.place[None], None, self.along.numbers(point.value))[0]
 
 
-def follow_equilibrium(along: NumberRange, place: Array, value: float) -> EquilibriumBranch:
+def follow_equilibrium(along: ContinuationNumber, place: Array, value: float) -> EquilibriumBranch:
     """The equilibria that an equilibrium (coordinates) at a value of the number belongs to."""
     follower = _Follower(along)
     start = follower.point(np.append(place, value), np.append(np.zeros(len(place)), 1.0))
@@ -334,18 +336,20 @@ def _point_at_value(
 def _between(follower: _Follower, here: _Point, there: _Point, step: float) -> list[CriticalValue]:
     """Critical values within a step."""
     if here.tangent[-1] * there.tangent[-1] < 0.0:
-        return _located(follower, here, step, FOLD, lambda point: float(point.tangent[-1]))
+        return _locate_critical_values(follower, here, step, FOLD, lambda point: float(point.tangent[-1]))
     if _determinant(follower, here) * _determinant(follower, there) < 0.0:
-        return _located(follower, here, step, BRANCH_POINT, lambda point: _determinant(follower, point))
+        return _locate_critical_values(
+            follower, here, step, BRANCH_POINT, lambda point: _determinant(follower, point)
+        )
     growth = [_growth_of_oscillations(follower.motion(point)) for point in (here, there)]
     if growth[0] * growth[1] < 0.0:
-        return _located(
+        return _locate_critical_values(
             follower, here, step, HOPF, lambda point: _growth_of_oscillations(follower.motion(point))
         )
     return []
 
 
-def _located(
+def _locate_critical_values(
     follower: _Follower, here: _Point, step: float, kind: str, measure: Callable[[_Point], float]
 ) -> list[CriticalValue]:
     reached: dict[float, _Point] = {}
@@ -382,17 +386,19 @@ def _growth_of_oscillations(motion: SmallMotions) -> float:
     return greatest if np.isfinite(greatest) and abs(greatest) > 1e-9 * scale else 0.0
 
 
-def branches(along: NumberRange, places_at: Sequence[tuple[float, Array]]) -> tuple[EquilibriumBranch, ...]:
+def branches(
+    along: ContinuationNumber, places_at: Sequence[tuple[float, Array]]
+) -> tuple[EquilibriumBranch, ...]:
     """The branches through equilibria (n, coordinates) at some values of the number, each once."""
     found: list[EquilibriumBranch] = []
     for value, places in places_at:
-        for place in settled(along.loaded, places, along.numbers(value)):
+        for place in settled_equilibria(along.loaded, places, along.numbers(value)):
             if np.isfinite(place[0]) and not any(_has(along, branch, value, place) for branch in found):
                 found.append(follow_equilibrium(along, place, value))
     return tuple(found)
 
 
-def _has(along: NumberRange, branch: EquilibriumBranch, value: float, place: Array) -> bool:
+def _has(along: ContinuationNumber, branch: EquilibriumBranch, value: float, place: Array) -> bool:
     """Whether a branch runs through an equilibrium: settled from where it crosses the value."""
     passes = np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) <= 0.0)
     for k in passes:
@@ -401,7 +407,7 @@ def _has(along: NumberRange, branch: EquilibriumBranch, value: float, place: Arr
         guess = branch.places[k] + share * (branch.places[k + 1] - branch.places[k])
         apart = np.remainder((guess - place) / along.loaded.units + np.pi, 2.0 * np.pi) - np.pi
         if np.max(np.abs(apart)) < 5e-3:
-            here = settled(along.loaded, guess[None], along.numbers(value))[0]
+            here = settled_equilibria(along.loaded, guess[None], along.numbers(value))[0]
             near = np.remainder((here - place) / along.loaded.units + np.pi, 2.0 * np.pi) - np.pi
             if np.isfinite(here[0]) and np.max(np.abs(near)) < SAME:
                 return True

@@ -388,7 +388,7 @@ def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[
     units = [one.unit for one in loaded.coordinates]
     unit = units[0] if len(set(units)) == 1 else ", ".join(units)
 
-    def named(name: str, dimensions: tuple[str, ...], values: Array) -> Any:
+    def named_number(name: str, dimensions: tuple[str, ...], values: Array) -> Any:
         variable = vocabulary_variable(name, dimensions, values)
         variable[2]["units"] = unit
         return variable
@@ -397,12 +397,12 @@ def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[
         reach = friction_reach(loaded, found.places)
         # on a stop friction has no bounds of its own
         reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])
-        return {"friction_reach": named("friction_reach", ("equilibrium", "coordinate"), reach)}
+        return {"friction_reach": named_number("friction_reach", ("equilibrium", "coordinate"), reach)}
     bands = friction_bands(found)
     ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)
     whole = np.array([band.whole for band in bands], dtype=np.int8)
     return {
-        "friction_band": named("friction_band", ("band", "end", "coordinate"), ends),
+        "friction_band": named_number("friction_band", ("band", "end", "coordinate"), ends),
         "friction_holds_everywhere": vocabulary_variable("friction_holds_everywhere", ("band",), whole),
     }
 

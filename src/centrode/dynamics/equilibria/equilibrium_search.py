@@ -85,9 +85,9 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     walked = None if curve is not None else walked_positions(loaded)
     starts = walked if walked is not None else _starts_on(curve)
     _check_forces(loaded, curve.places if curve is not None else starts)
-    found = settled(loaded, starts)
+    found = settled_equilibria(loaded, starts)
     if curve is None:
-        found = np.concatenate([found, settled(loaded, approached(loaded, starts[::2]))])
+        found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
     places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
     if not len(places) and not loaded.mechanism.stops:
         raise no_equilibrium(len(starts) if curve is None else len(curve.places))
@@ -115,7 +115,7 @@ def walked_positions(loaded: LoadedMechanism) -> Array:
         way = 0.7 * way + generator.normal(size=way.shape)
         moved = np.einsum("ncm,nm->nc", free, way)
         longest = np.max(np.abs(moved / loaded.units), axis=1)
-        ahead = loaded.closed(lanes + moved * (PACE / longest)[:, None])
+        ahead = loaded.closed_coordinates(lanes + moved * (PACE / longest)[:, None])
         far = np.max(np.abs((ahead - lanes) / loaded.units), axis=1)
         reached = far < 2.0 * PACE
         lanes = np.where(reached[:, None], ahead, lanes)
@@ -158,7 +158,7 @@ def _check_forces(loaded: LoadedMechanism, places: Array) -> None:
         raise InputError("[[loads]]", what, _("add gravity, springs or other loads"))
 
 
-def approached(loaded: LoadedMechanism, starts: Array) -> Array:
+def approached_positions(loaded: LoadedMechanism, starts: Array) -> Array:
     """Positions behind steps towards equilibria with no, one, two... unstable directions, by turns.
 
     Steps go down along all directions but so many of the least stiffness, along which they go up (the gentlest ascent:
@@ -170,18 +170,20 @@ def approached(loaded: LoadedMechanism, starts: Array) -> Array:
     for _step in range(APPROACHES):
         found = loaded.at(places)
         free = loaded.free_directions(found.rows)
-        force, stiffness = _reduced(found.residual, found.stiffness, free)
+        force, stiffness = _reduced_system(found.residual, found.stiffness, free)
         sizes, vectors = np.linalg.eigh(np.nan_to_num(0.5 * (stiffness + stiffness.transpose(0, 2, 1))))
         floor = 1e-6 * np.max(np.abs(sizes), axis=1, initial=1e-300)[:, None]
         along = senses * np.einsum("nij,ni->nj", vectors, force) / np.maximum(np.abs(sizes), floor)
-        places = _moved(loaded, places, free, np.einsum("nij,nj->ni", vectors, along), None)[0]
+        places = _moved_positions(loaded, places, free, np.einsum("nij,nj->ni", vectors, along), None)[0]
     return places
 
 
-def settled(loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float] | None = None) -> Array:
+def settled_equilibria(
+    loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float] | None = None
+) -> Array:
     """Equilibria (n, coordinates) that Newton's method reaches from positions; NaN where it reaches none."""
-    scale = force_scale(loaded, loaded.closed(starts, numbers)) or 1.0
-    places = loaded.closed(starts, numbers)
+    scale = force_scale(loaded, loaded.closed_coordinates(starts, numbers)) or 1.0
+    places = loaded.closed_coordinates(starts, numbers)
     longest = np.full(len(places), np.inf)
     left = np.flatnonzero(np.isfinite(places[:, 0]))
     for _step in range(ITERATIONS):
@@ -189,9 +191,9 @@ def settled(loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float]
             break
         found = loaded.at(places[left], numbers=numbers)
         free = loaded.free_directions(found.rows)
-        force, stiffness = _reduced(found.residual, found.stiffness, free)
+        force, stiffness = _reduced_system(found.residual, found.stiffness, free)
         along = np.einsum("nij,nj->ni", np.linalg.pinv(np.nan_to_num(stiffness), 1e-12), force)
-        places[left], longest[left] = _moved(loaded, places[left], free, along, numbers)
+        places[left], longest[left] = _moved_positions(loaded, places[left], free, along, numbers)
         left = left[~(longest[left] < SETTLED)]
     settling = np.flatnonzero(longest < NEARLY)
     if len(settling):
@@ -205,7 +207,7 @@ def settled(loaded: LoadedMechanism, starts: Array, numbers: Mapping[str, float]
     return places
 
 
-def _reduced(residual: Array, stiffness: Array, free: Array) -> tuple[Array, Array]:
+def _reduced_system(residual: Array, stiffness: Array, free: Array) -> tuple[Array, Array]:
     """Force and stiffness along the free directions."""
     return (
         np.einsum("nc,ncm->nm", residual, free),
@@ -213,7 +215,7 @@ def _reduced(residual: Array, stiffness: Array, free: Array) -> tuple[Array, Arr
     )
 
 
-def _moved(
+def _moved_positions(
     loaded: LoadedMechanism, places: Array, free: Array, along: Array, numbers: Mapping[str, float] | None
 ) -> tuple[Array, Array]:
     """Positions behind a step, closed, and how long the step is; a long one is cut."""
@@ -221,7 +223,7 @@ def _moved(
     longest = np.max(np.abs(step / loaded.units), axis=1, initial=0.0)
     with np.errstate(all="ignore"):
         step = step * np.minimum(1.0, LONGEST / np.maximum(longest, 1e-300))[:, None]
-    ahead = loaded.closed(places + step, numbers)
+    ahead = loaded.closed_coordinates(places + step, numbers)
     # where it does not close it stays, and tries the other side
     lost = ~np.isfinite(ahead[:, 0])
     ahead[lost] = places[lost]

@@ -117,7 +117,7 @@ def _end(loaded: LoadedMechanism, seed: Array, tangent: Array) -> Array:
 
 def _ahead(loaded: LoadedMechanism, place: Array, along: Array) -> Callable[[float], Array]:
     unit = along / np.max(np.abs(along / loaded.units))
-    return lambda far: loaded.closed(place + far * unit)
+    return lambda far: loaded.closed_coordinates(place + far * unit)
 
 
 def _same_as_seed(

@@ -128,14 +128,14 @@ class LoadedMechanism:
         return equation_units(self.equations.constraints, self.equations.numbers)
 
     @cached_property
-    def traced(self) -> NumbersAsVariables:
+    def traced_equations(self) -> NumbersAsVariables:
         """The equations with numbers as variables."""
         return NumbersAsVariables.of(self.equations)
 
     def numbers_of(self, equations: EquationsOfMotion) -> dict[str, float]:
         """Values of the variables that stand for numbers, in equations of the same structure."""
-        values = self.traced.values(equations)
-        return dict(zip(self.traced.parameters, values[:, 0].tolist(), strict=True))
+        values = self.traced_equations.values(equations)
+        return dict(zip(self.traced_equations.parameters, values[:, 0].tolist(), strict=True))
 
     @cached_property
     def numbers(self) -> dict[str, float]:
@@ -145,7 +145,7 @@ class LoadedMechanism:
     @cached_property
     def graph(self) -> Graph:
         """All of `LinearEquations`, entry by entry; what is a plain zero is left out."""
-        m, equations = EXPRESSIONS, self.traced.equations
+        m, equations = EXPRESSIONS, self.traced_equations.equations
         q = [variable(f"coordinate {k}") for k in range(self.size)]
         v = [variable(f"speed {k}") for k in range(self.size)]
         time = variable(TIME)
@@ -195,13 +195,13 @@ class LoadedMechanism:
         """
         count, e = len(coordinates), self.equations.equations
         if reactions is None:
-            found = self._evaluated(coordinates, np.zeros((count, e)), speeds, numbers)
+            found = self._evaluate(coordinates, np.zeros((count, e)), speeds, numbers)
             if not e:
                 return found
             reactions = self.reactions(found)
-        return self._evaluated(coordinates, np.reshape(reactions, (count, e)), speeds, numbers)
+        return self._evaluate(coordinates, np.reshape(reactions, (count, e)), speeds, numbers)
 
-    def _evaluated(
+    def _evaluate(
         self,
         coordinates: Array,
         reactions: Array,
@@ -243,7 +243,7 @@ class LoadedMechanism:
         """Derivatives of residual and closures, along a change of all numbers."""
         kept = ("residual", "closures")
         outputs = {name: x for name, x in self.graph.outputs.items() if name.startswith(kept)}
-        change = {variable(name): variable(f"change of {name}") for name in self.traced.parameters}
+        change = {variable(name): variable(f"change of {name}") for name in self.traced_equations.parameters}
         (found,) = directional_derivatives(list(outputs.values()), [change])
         return Graph({name: as_node(x) for name, x in zip(outputs, found, strict=True)})
 
@@ -252,7 +252,7 @@ class LoadedMechanism:
     ) -> tuple[Array, Array]:
         """How residual (coordinates) and closures (equations) change with the numbers, at one position at rest."""
         values: dict[str, Any] = {TIME: 0.0} | dict(numbers)
-        values |= {f"change of {name}": changes[name] for name in self.traced.parameters}
+        values |= {f"change of {name}": changes[name] for name in self.traced_equations.parameters}
         values |= {f"coordinate {k}": x for k, x in enumerate(place)}
         values |= {f"speed {k}": 0.0 for k in range(self.size)}
         values |= {f"reaction {k}": x for k, x in enumerate(reactions)}
@@ -284,7 +284,7 @@ class LoadedMechanism:
         generator = np.random.default_rng(3)
         here = self.position.coordinates
         away = generator.uniform(-0.3, 0.3, (4, self.size)) * self.units
-        return np.array([here, *(self.closed(here + one) for one in away)])
+        return np.array([here, *(self.closed_coordinates(here + one) for one in away)])
 
     def scaled_rows(self, rows: Array) -> Array:
         """G (n, equations, coordinates) without units."""
@@ -298,7 +298,7 @@ class LoadedMechanism:
         _left, _sizes, right = np.linalg.svd(self.scaled_rows(rows))
         return np.asarray(right[:, self.rank :, :].transpose(0, 2, 1) * self.units[None, :, None])
 
-    def closed(self, coordinates: Array, numbers: Mapping[str, Number] | None = None) -> Array:
+    def closed_coordinates(self, coordinates: Array, numbers: Mapping[str, Number] | None = None) -> Array:
         """Coordinates nearest to these (coordinates) or (n, coordinates) that close; NaN where none are found."""
         place = np.atleast_2d(np.array(coordinates, dtype=np.float64))
         if self.equations.equations:

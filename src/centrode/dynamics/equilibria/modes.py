@@ -21,10 +21,10 @@ from centrode.dynamics.equilibria.equilibrium import (
     stable_first,
 )
 from centrode.dynamics.equilibria.equilibrium_search import (
-    approached,
+    approached_positions,
     find_equilibria,
     no_equilibrium,
-    settled,
+    settled_equilibria,
 )
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import mode_motion, posed_motion
@@ -147,14 +147,14 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         return np.asarray(places[equilibrium - 1])
     if loaded.mobility:
         begin = loaded.position.coordinates[None]
-        found = settled(loaded, approached(loaded, begin))
+        found = settled_equilibria(loaded, approached_positions(loaded, begin))
         if np.isfinite(found[0, 0]):
             return np.asarray(found[0])
     # what says why there is none
-    found = stable_first(find_equilibria(loaded))
-    if not len(found.places):
-        raise no_equilibrium(found.starts)
-    return np.asarray(found.places[0])
+    all_found = stable_first(find_equilibria(loaded))
+    if not len(all_found.places):
+        raise no_equilibrium(all_found.starts)
+    return np.asarray(all_found.places[0])
 
 
 def _check_masses(loaded: LoadedMechanism, motions: SmallMotions) -> None:
@@ -194,7 +194,9 @@ def _dataset(
         "damped_frequency": vocabulary_variable("damped_frequency", ("mode",), values.imag),
         "natural_frequency": vocabulary_variable("natural_frequency", ("mode",), sizes),
         "damping_ratio": vocabulary_variable("damping_ratio", ("mode",), damping),
-        "undamped_frequency": vocabulary_variable("undamped_frequency", ("freedom",), motions.undamped),
+        "undamped_frequency": vocabulary_variable(
+            "undamped_frequency", ("freedom",), motions.undamped_frequencies
+        ),
         "mode_amplitude": amplitude,
         "mode_phase": vocabulary_variable(
             "mode_phase", ("mode", "coordinate"), np.where(np.abs(shapes) > 1e-12, np.angle(shapes), 0.0)

@@ -84,7 +84,7 @@ def mode_motion(loaded: LoadedMechanism, place: Array, shape: Complex, frequency
     for _halving in range(12):
         # by the sine of the phase: the motion begins and ends in the position itself where all move together
         moved = size * np.imag(shape[None, :] * np.exp(1j * phases)[:, None])
-        places = loaded.closed(place + moved)
+        places = loaded.closed_coordinates(place + moved)
         strayed = np.max(np.abs((places - place - moved) / loaded.units))
         if np.isfinite(strayed) and strayed < 0.5 * size:
             break

@@ -20,9 +20,9 @@ from centrode.dynamics.equilibria.configuration_curve import repeats_with_positi
 from centrode.dynamics.equilibria.equilibrium_search import (
     SAME,
     Equilibria,
-    approached,
+    approached_positions,
     force_scale,
-    settled,
+    settled_equilibria,
     stop_values,
     walked_positions,
 )
@@ -155,7 +155,7 @@ def _with_closed(
     """Equilibria at which some stops are closed, push, and no other is violated."""
     kept = tuple(_closed_stop(loaded.mechanism, stop, bound) for stop, bound, _sign in closed)
     held = replace(loaded, equations=replace(loaded.equations, kept=(*loaded.equations.kept, *kept)))
-    near = held.closed(_near_bounds(loaded, closed, starts))
+    near = held.closed_coordinates(_near_bounds(loaded, closed, starts))
     near = near[np.isfinite(near[:, 0])]
     if not len(near):
         return
@@ -164,7 +164,9 @@ def _with_closed(
     if held.mobility != loaded.mobility - len(closed):
         return
     if held.mobility:
-        places = np.concatenate([settled(held, near), settled(held, approached(held, near[::2]))])
+        places = np.concatenate(
+            [settled_equilibria(held, near), settled_equilibria(held, approached_positions(held, near[::2]))]
+        )
     else:
         places = near
     places = _first_of_same(loaded, places[np.isfinite(places[:, 0])])

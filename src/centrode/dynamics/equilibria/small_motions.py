@@ -98,7 +98,7 @@ class SmallMotions:
         return np.asarray(found / sized[np.arange(len(sized)), greatest][:, None])
 
     @cached_property
-    def undamped(self) -> Array:
+    def undamped_frequencies(self) -> Array:
         """Angular frequencies [rad/s] without damping, increasing; NaN for a direction that is not driven back."""
         if not self.moves_mass:
             return np.zeros(0)
@@ -144,10 +144,10 @@ def small_motions(
     free = loaded.free_directions(found.rows)
     moving = np.zeros_like(places) if speeds is None else speeds
 
-    def reduced(matrix: Array) -> Array:
+    def reduced_matrix(matrix: Array) -> Array:
         return np.asarray(np.einsum("ncm,ncd,nde->nme", free, matrix, free))
 
-    mass, damping, stiffness = map(reduced, (found.mass, found.damping, found.stiffness))
+    mass, damping, stiffness = map(reduced_matrix, (found.mass, found.damping, found.stiffness))
     mass = 0.5 * (mass + mass.transpose(0, 2, 1))
     return tuple(
         SmallMotions(places[k], moving[k], loaded.units, free[k], mass[k], damping[k], stiffness[k])

@@ -33,17 +33,17 @@ from centrode.dynamics.force_polygons.steps import (
     AssurPoint,
     ClosedAlong,
     ClosedPolygon,
+    EquationOutcome,
     ForceLine,
     ForcesAlongGuide,
     JointReaction,
     MomentsOfBase,
     MomentsOfGroup,
     MomentsOfLink,
+    MomentUnknown,
     Neglect,
-    Outcome,
     SolvedTogether,
     Step,
-    Unknown,
 )
 
 # The steps of a group: equations of moments with their terms, equations of forces, what follows.
@@ -68,8 +68,10 @@ class WorkedSteps:
         """Moments of a link about the inner hinge give the part of the outer reaction square to the arm."""
         symbol = ledger.symbol(side.joint, side.body) + "ᵗ"
         terms = ledger.terms([side.body], inner.place)
-        outcome = Outcome(symbol, size if terms else 0.0)
-        self.add(MomentsOfLink(ledger.bodies.number(side.body), inner, Unknown(symbol, arm), terms, outcome))
+        outcome = EquationOutcome(symbol, size if terms else 0.0)
+        self.add(
+            MomentsOfLink(ledger.bodies.number(side.body), inner, MomentUnknown(symbol, arm), terms, outcome)
+        )
 
     def polygon(self, dyad: Dyad, ledger: Ledger) -> None:
         """The forces of the group, and along what the unknown ones lie."""
@@ -97,7 +99,7 @@ class WorkedSteps:
         known = names(ledger.actions[body])
         if outer is not None:
             known = [ledger.symbol(outer, body), *known]
-        outcome = Outcome(last.symbol, abs(last.force), magnitude=True)
+        outcome = EquationOutcome(last.symbol, abs(last.force), magnitude=True)
         self.add(ClosedPolygon((ledger.bodies.number(body),), (*known, last.symbol), outcome=outcome))
 
     def along_guide(self, side: ForceSide, inner: StaticJoint, ledger: Ledger, part: float) -> None:
@@ -105,7 +107,7 @@ class WorkedSteps:
         symbol = ledger.symbol(side.joint, side.body) + "ᵗ"
         forces = (symbol, *names(ledger.actions[side.body]))
         number = ledger.bodies.number(side.body)
-        self.add(ForcesAlongGuide(number, inner.name, forces, Outcome(symbol, part + 0.0)))
+        self.add(ForcesAlongGuide(number, inner.name, forces, EquationOutcome(symbol, part + 0.0)))
 
     def about_far_hinge(
         self, dyad: Dyad, ledger: Ledger, part: float, lever: float, reach: float, left: float
@@ -119,9 +121,9 @@ class WorkedSteps:
             MomentsOfGroup(
                 numbers_of(dyad, ledger),
                 dyad.second.joint,
-                Unknown(f"{symbol}ⁿ", reach),
+                MomentUnknown(f"{symbol}ⁿ", reach),
                 terms,
-                Outcome(f"{symbol}ⁿ", left),
+                EquationOutcome(f"{symbol}ⁿ", left),
             )
         )
 
@@ -132,7 +134,7 @@ class WorkedSteps:
         symbol = ledger.symbol(joint, body)
         loads = sum(abs(action.force) for action in ledger.actions[body]) + abs(force)
         some = abs(moment) > NONE * ledger.scale * loads
-        outcome = Outcome(f"M{symbol.removeprefix('R')}", moment if some else 0.0, "N m")
+        outcome = EquationOutcome(f"M{symbol.removeprefix('R')}", moment if some else 0.0, "N m")
         beside = (symbol, abs(moment) / abs(force)) if force and some else None
         self.add(MomentsOfLink(ledger.bodies.number(body), joint, None, (), outcome, beside))
 
@@ -420,7 +422,7 @@ def _add_triad(
     )
     base = ledger.bodies.number(triad.base)
     worked.add(AssurPoint(((one, legs[0].inner), (other, legs[1].inner))))
-    worked.add(MomentsOfBase(base, Unknown(last, reach), turning, Outcome(last, size)))
+    worked.add(MomentsOfBase(base, MomentUnknown(last, reach), turning, EquationOutcome(last, size)))
     worked.add(ClosedAlong((one, other)))
 
 
@@ -480,12 +482,12 @@ def _on_hinge(
     acts = ledger.reaction(other, body, size * unit, size * turn)
     symbol = acts.symbol if share > 0 else acts.symbol.removeprefix("−")
     if other.kind != "drive":
-        unknown = Unknown(acts.symbol, factor if unit else None)
+        unknown = MomentUnknown(acts.symbol, factor if unit else None)
     elif unit:
-        unknown = Unknown(acts.symbol, share * factor)
+        unknown = MomentUnknown(acts.symbol, share * factor)
     else:
-        unknown = Unknown(symbol if share > 0 else f"−{symbol}")
-    outcome = Outcome(symbol, size if other.kind == "drive" else share * size, "N" if unit else "N m")
+        unknown = MomentUnknown(symbol if share > 0 else f"−{symbol}")
+    outcome = EquationOutcome(symbol, size if other.kind == "drive" else share * size, "N" if unit else "N m")
     terms = ledger.terms([body], pivot.place)
     worked.add(MomentsOfLink(ledger.bodies.number(body), pivot, unknown, terms, outcome))
     force = -(total(ledger.actions[body]) + acts.force)
@@ -510,7 +512,7 @@ def _on_guide(
     moment = -(ledger.moment([body], guide.place) + push.about(guide.place))
     share = guide.shares[body]
     hold = ledger.reaction(guide, body, share * thrust, share * moment)
-    pushed = Outcome(push.symbol, abs(push.force), magnitude=True)
+    pushed = EquationOutcome(push.symbol, abs(push.force), magnitude=True)
     worked.add(ForcesAlongGuide(ledger.bodies.number(body), guide.name, (), pushed))
     worked.closing(body, ledger, other, hold)
     worked.guide_moment(guide, body, ledger, moment, thrust)
@@ -587,10 +589,10 @@ def _add_reaction(
     bodies = [name for name in cell.bodies if name in joint.shares]
     body = max(bodies, key=lambda name: joint.shares[name])
     action = ledger.reaction(joint, body, force, moment)
-    parts = [Outcome(action.symbol, abs(action.force), magnitude=True)] if action.force else []
+    parts = [EquationOutcome(action.symbol, abs(action.force), magnitude=True)] if action.force else []
     if joint.kind == "guide":
-        parts.append(Outcome(f"M{action.symbol.removeprefix('R')}", action.moment, "N m"))
+        parts.append(EquationOutcome(f"M{action.symbol.removeprefix('R')}", action.moment, "N m"))
     elif joint.kind in ("mesh", "drive") and not joint.has_force:
-        parts = [Outcome(action.symbol, action.moment, "N m")]
+        parts = [EquationOutcome(action.symbol, action.moment, "N m")]
     if parts:
         worked.add(JointReaction(joint, tuple(parts)))

@@ -29,8 +29,8 @@ from centrode.dynamics.force_polygons.statics import (
     Cell,
     FreeBodies,
     Ledger,
-    Rates,
     Source,
+    StateRates,
     StaticJoint,
     cells_of,
     joints_of,
@@ -59,7 +59,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.round_scales import FORCE_SCALES, round_scale
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.quantities import status_word
 from centrode.structure.plan import Structure
 
@@ -301,7 +301,7 @@ def _rate(stage: ConstructionStage, bodies: FreeBodies, action: Action) -> compl
         return stage.points[bodies.sliders[action.body].point]
     if action.body in bodies.pins:
         return stage.points[bodies.pins[action.body]]
-    return stage.carried(action.body, action.place)
+    return stage.point_rate(action.body, action.place)
 
 
 def _turn(stage: ConstructionStage, bodies: FreeBodies, body: str) -> float:
@@ -474,7 +474,7 @@ def force_polygons(
     )
 
 
-def _teeth(prepared: Ready, state: State, rates: Rates, burden: MassesAndLoads) -> dict[str, complex]:
+def _teeth(prepared: Ready, state: State, rates: StateRates, burden: MassesAndLoads) -> dict[str, complex]:
     """Tangential forces on the second wheels of pairs of gears [N]: which flanks bear follows from all loads."""
     if not any(gear.pair for gear in prepared.mechanism.gears):
         return {}
@@ -495,24 +495,24 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
         )
 
 
-def _real_state(solved: Solved, pace: InputMotion) -> tuple[State, Rates, str]:
+def _real_state(solved: Solved, pace: InputMotion) -> tuple[State, StateRates, str]:
     """The state at the real speed of a machine, its rates by time, and whose they are."""
-    rates = Rates(float(pace.moving.rate[0]), float(pace.acceleration[0]))
+    rates = StateRates(float(pace.moving.rate[0]), float(pace.acceleration[0]))
     return State.of(solved, pace.moving), rates, pace.source
 
 
-def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, str]:
+def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, StateRates, str]:
     """The state at the speed that `reduce` takes, its rates by time, and whose they are."""
     span, prepared = solved.span, solved.ready
     by_machine = prepared.mechanism.runs_at_mean_speed and prepared.parameter.is_uniform
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
-        return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), "machine"
+        return State.of(solved, moving), StateRates(float(moving.rate[0]), 0.0), "machine"
     moving = DriveMotion(span.time, span.parameter, span.rate)
-    return State.of(solved, moving), Rates(float(span.rate[0]), float(span.second_rate[0])), "drive"
+    return State.of(solved, moving), StateRates(float(span.rate[0]), float(span.second_rate[0])), "drive"
 
 
-def _speeds(exact: xr.Dataset, prepared: Ready, rates: Rates) -> dict[str, float]:
+def _speeds(exact: xr.Dataset, prepared: Ready, rates: StateRates) -> dict[str, float]:
     """Speed of each drive; with several they have their own."""
     drives = prepared.mechanism.drives
     if not prepared.kinematics.path.by_time:
@@ -618,7 +618,7 @@ def _moments(ledger: Ledger) -> dict[str, float]:
     return found
 
 
-def _by_work(burden: MassesAndLoads, state: State, rates: Rates, prepared: Ready) -> dict[str, float]:
+def _by_work(burden: MassesAndLoads, state: State, rates: StateRates, prepared: Ready) -> dict[str, float]:
     """Balancing moment by virtual work, J q'' + J' q'^2/2 - M, of one drive."""
     if prepared.kinematics.path.by_time:
         return {}

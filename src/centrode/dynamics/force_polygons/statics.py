@@ -27,7 +27,7 @@ from centrode.locale import _
 from centrode.model.labels import sliders_of
 from centrode.model.mechanism import FRAME, Drive, Guide, Mechanism
 from centrode.numerics.operations import PLAIN
-from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point
+from centrode.structure.constraints import GearRatio, NoSlip, TrackContact, contact_point
 from centrode.structure.groups import Group, TurnedLink, Turning
 from centrode.structure.plan import Structure
 from centrode.structure.rank import in_order, match, strong_components
@@ -230,7 +230,7 @@ def _guides(bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]
 def _wheels(
     structure: Structure, bodies: FreeBodies, drawing: VectorDrawing, teeth: Mapping[str, complex]
 ) -> Iterator[StaticJoint]:
-    redundant = {one.rolling for one in structure.redundant if isinstance(one, Contact)}
+    redundant = {one.rolling for one in structure.redundant if isinstance(one, TrackContact)}
     for constraint in structure.constraints:
         if isinstance(constraint, GearRatio):
             yield _mesh(constraint, bodies, drawing, teeth.get(constraint.gear))
@@ -353,7 +353,7 @@ def moment_about(actions: Iterable[Action], place: complex) -> float:
 
 
 def outer_actions(
-    burden: MassesAndLoads, state: State, rates: Rates, drawing: VectorDrawing, bodies: FreeBodies
+    burden: MassesAndLoads, state: State, rates: StateRates, drawing: VectorDrawing, bodies: FreeBodies
 ) -> list[Action]:
     """Loads, weights and inertia on the moving bodies and the frame at the only sample of a state."""
     reader = ActionReader(burden, state, drawing, bodies)
@@ -364,7 +364,7 @@ def outer_actions(
 
 
 @dataclass(frozen=True)
-class Rates:
+class StateRates:
     """First and second derivative by time of what a state's jets are differentiated by."""
 
     first: float
@@ -384,7 +384,7 @@ class ActionReader:
     drawing: VectorDrawing
     bodies: FreeBodies
 
-    def inertia(self, mass: Mass, rates: Rates) -> Iterator[Action]:
+    def inertia(self, mass: Mass, rates: StateRates) -> Iterator[Action]:
         """Force and moment of inertia of a link, against its acceleration."""
         number = self.bodies.number(mass.link)
         if mass.weighs:
@@ -642,7 +642,7 @@ def cells_of(structure: Structure, bodies: FreeBodies, joints: Sequence[StaticJo
 
     Raises NotComputedYet where constraints repeat each other, so that equilibrium does not determine the reactions.
     """
-    repeated = [one.label for one in structure.redundant if not isinstance(one, Contact)]
+    repeated = [one.label for one in structure.redundant if not isinstance(one, TrackContact)]
     if repeated:
         _refuse(repeated)
     names = [name for name in reversed(bodies.names) if name != FRAME]

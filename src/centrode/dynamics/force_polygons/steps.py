@@ -13,7 +13,7 @@ from centrode.dynamics.force_polygons.statics import MomentTerm, StaticJoint
 
 
 @dataclass(frozen=True)
-class Unknown:
+class MomentUnknown:
     """An unknown of an equation of moments with its arm [m]; None where it is a moment itself."""
 
     symbol: str
@@ -21,7 +21,7 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class EquationOutcome:
     """Outcome of an equation.
 
     Attributes
@@ -57,9 +57,9 @@ class MomentsOfLink:
 
     link: int
     about: StaticJoint
-    unknown: Unknown | None
+    unknown: MomentUnknown | None
     terms: tuple[MomentTerm, ...]
-    outcome: Outcome
+    outcome: EquationOutcome
     beside: tuple[str, float] | None = None
 
 
@@ -69,9 +69,9 @@ class MomentsOfGroup:
 
     links: tuple[int, ...]
     about: StaticJoint
-    unknown: Unknown
+    unknown: MomentUnknown
     terms: tuple[MomentTerm, ...]
-    outcome: Outcome
+    outcome: EquationOutcome
 
 
 @dataclass(frozen=True)
@@ -79,9 +79,9 @@ class MomentsOfBase:
     """Equilibrium of moments of the base of a triad about its Assur point; `moment` is that of all known forces."""
 
     link: int
-    unknown: Unknown
+    unknown: MomentUnknown
     moment: float
-    outcome: Outcome
+    outcome: EquationOutcome
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class ClosedPolygon:
     links: tuple[int, ...]
     forces: tuple[str, ...]
     lines: tuple[ForceLine, ...] = ()
-    outcome: Outcome | None = None
+    outcome: EquationOutcome | None = None
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class ForcesAlongGuide:
     link: int
     guide: str
     forces: tuple[str, ...]
-    outcome: Outcome
+    outcome: EquationOutcome
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class JointReaction:
     """What a joint of a group that was solved together transfers."""
 
     joint: StaticJoint
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[EquationOutcome, ...]
 
 
 class Neglect(Enum):

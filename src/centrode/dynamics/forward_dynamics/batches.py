@@ -194,7 +194,7 @@ def integrate_many(
     state[1, ~closes] = 0.0
     integrator = integrator_of(integration.problem, executor, width=None)
     bounds = np.linspace(0, lanes, threads + 1).astype(int)
-    rows = np.full((len(instants), len(integration.problem.carried), lanes), np.nan)
+    rows = np.full((len(instants), len(integration.problem.carried_names), lanes), np.nan)
     attempts = np.zeros(lanes)
     # events are found one mechanism after the other
     waiting = enumerate(instants) if not equations.has_events else ()
@@ -275,7 +275,7 @@ def _parameters(
 
 def _carried_values(free: FreeMotion, start: InitialState, parameters: Array, lanes: int) -> Array:
     names = free.integration.names
-    found: dict[str, Array] = {name: np.zeros(lanes) for name in free.integration.problem.carried}
+    found: dict[str, Array] = {name: np.zeros(lanes) for name in free.integration.problem.carried_names}
     found |= dict(zip(names.coordinates, start.coordinates, strict=True))
     found |= dict(zip(names.speeds, start.speeds, strict=True))
     given = dict(zip(free.integration.problem.parameters, parameters, strict=True))
@@ -287,5 +287,5 @@ def _carried_values(free: FreeMotion, start: InitialState, parameters: Array, la
         for name, start in zip(names.states, states_of(free.equations.controls), strict=True)
     }
     kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
-    rows = [found[name] if name in kept else closed[name] for name in free.integration.problem.carried]
+    rows = [found[name] if name in kept else closed[name] for name in free.integration.problem.carried_names]
     return np.array([np.broadcast_to(row, lanes) for row in rows], dtype=np.float64)

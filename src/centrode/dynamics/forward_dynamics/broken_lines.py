@@ -29,7 +29,7 @@ class BrokenLine:
     period: Number = 0.0
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
     by_place = False
 

@@ -144,7 +144,7 @@ class HalfCircles:
         cosine, sine = m.cos(angle), m.sin(angle)
         # t = c - r exp(-i u), whose derivative by u is i r exp(-i u)
         slope = Parts(radius * sine, radius * cosine)
-        parts = complex_parts(problem.of_rates, {*problem.parameters, *problem.fixed})
+        parts = complex_parts(problem.of_rates, {*problem.parameters, *problem.fixed_names})
         place = {TIME: as_node(centre - radius * cosine), IMAGINARY + TIME: as_node(radius * sine)}
         plain = {name: as_node(rate.real) for name, rate in parts.items()}
         plain |= {IMAGINARY + name: as_node(rate.imaginary) for name, rate in parts.items()}
@@ -157,18 +157,18 @@ class HalfCircles:
         # an error of this size leaves steps as they are
         steady = as_node(SAFETY**8)
         return InitialValueProblem(
-            parameters, rates, {name: variable(name) for name in problem.fixed}, steady
+            parameters, rates, {name: variable(name) for name in problem.fixed_names}, steady
         )
 
     def _by_machine_code(self, parameters: Array, time: float, carried: Array, radius: float) -> Complex:
         problem, followed = self._complex_problem, self.problem.unknowns
-        values = dict(zip(self.problem.carried, carried, strict=True))
+        values = dict(zip(self.problem.carried_names, carried, strict=True))
         given = dict(zip(self.problem.parameters, parameters, strict=True))
         given |= {CENTRE: time + radius, RADIUS: radius, END: np.pi, SMALLEST: 0.0}
         state = np.array(
-            [0.0, np.pi / POINTS, 0.0, 0.0, *(values.get(name, 0.0) for name in problem.carried)]
+            [0.0, np.pi / POINTS, 0.0, 0.0, *(values.get(name, 0.0) for name in problem.carried_names)]
         )
-        rows = np.full((POINTS + 1, len(problem.carried) + 1), np.nan)
+        rows = np.full((POINTS + 1, len(problem.carried_names) + 1), np.nan)
         lanes = np.array([given[name] for name in problem.parameters])[:, None]
         found = integrator_of(problem, self.executor, hasty=True).run(lanes, state[:, None], POINTS + 1, rows)
         # the last step is of rounding, if there is one
@@ -177,7 +177,7 @@ class HalfCircles:
             return np.full((POINTS + 1, len(followed)), np.nan, dtype=np.complex128)
         if int(found[3, 0]) > POINTS:
             steps[-1] = rows[POINTS]
-        order = {name: k + 1 for k, name in enumerate(problem.carried)}
+        order = {name: k + 1 for k, name in enumerate(problem.carried_names)}
         real = steps[:, [order[name] for name in followed]]
         imaginary = steps[:, [order[IMAGINARY + name] for name in followed]]
         start = np.array([values[name] for name in followed], dtype=np.complex128)

@@ -33,7 +33,7 @@ AT_LEAST, OPEN, AT_MOST = -1.0, 0.0, 1.0
 
 
 @dataclass(frozen=True)
-class Pressing:
+class JointPressing:
     """How the reaction of a joint makes the size of friction by a coefficient.
 
     Attributes
@@ -104,7 +104,7 @@ class Contact:
     static: Number | None = None
     drift: Number = 0.0
     until: float | str | None = None
-    pressing: Pressing | None = None
+    pressing: JointPressing | None = None
 
     def forces(self, now: Situation) -> tuple[Number, Number]:
         """Force along the coordinate while it slips forwards, and while it slips backwards; by a law of its own."""
@@ -261,7 +261,7 @@ class SmoothFriction:
     uses: frozenset[str] = frozenset("v")
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = Friction.energy_class
     by_place = False
 

@@ -80,13 +80,13 @@ def controls_of(mechanism: Mechanism, coordinate_of: CoordinateOf) -> tuple[Cont
     left, ordered = list(mechanism.controllers), []
     while left:
         waiting = {one.name for one in left}
-        ready = next(one for one in left if not _needed(one, outputs) & waiting)
+        ready = next(one for one in left if not _needed_variables(one, outputs) & waiting)
         ordered.append(_control(mechanism, ready, outputs, coordinate_of))
         left.remove(ready)
     return tuple(ordered)
 
 
-def _needed(one: Controller, outputs: list[str]) -> set[str]:
+def _needed_variables(one: Controller, outputs: list[str]) -> set[str]:
     if one.value is None:
         return set()
     return set(compile_formula(one.value, controller_variables(one, outputs), "").used) & set(outputs)

@@ -52,7 +52,7 @@ from centrode.dynamics.forward_dynamics.reaction_friction import (
     Pair,
     PressedJoint,
     friction_forces,
-    pressed_by,
+    pressing_force,
 )
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointValues,
@@ -111,7 +111,7 @@ class KeptDrive:
 
 
 @dataclass(frozen=True)
-class Shaft:
+class DriveShaft:
     """Rotating masses or a flywheel that move as a drive does.
 
     Attributes
@@ -238,7 +238,7 @@ class EquationsOfMotion:
     masses: tuple[Mass, ...]
     loads: tuple[LoadAlong, ...]
     kept: tuple[KeptDrive, ...] = ()
-    shafts: tuple[Shaft, ...] = ()
+    shafts: tuple[DriveShaft, ...] = ()
     weights: tuple[Number, ...] = ()
     dependent: frozenset[int] = frozenset()
     references: tuple[Number, ...] = ()
@@ -257,7 +257,7 @@ class EquationsOfMotion:
         return tuple(enumerate(row_numbers(self.contacts), self.equations))
 
     @property
-    def flagged(self) -> tuple[int, ...]:
+    def flagged_rows(self) -> tuple[int, ...]:
         """Rows that may be left out: closures that others imply, and those of contacts."""
         return (*sorted(self.dependent), *(row for row, _number in self.contact_rows))
 
@@ -684,7 +684,7 @@ class EquationsOfMotion:
             assert contact.pressing is not None
             kinetic = contact.pressing.kinetic
             presses = [
-                kinetic * pressed_by(m, contact, *contact.pressing.parts(reactions[k], sense, kinetic))
+                kinetic * pressing_force(m, contact, *contact.pressing.parts(reactions[k], sense, kinetic))
                 for sense in (1.0, -1.0)
             ]
             measures[k] = replace(measures[k], strength=size, forwards=-presses[0], backwards=presses[1])

@@ -196,7 +196,7 @@ def contact_function(
     outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
     outputs |= _press_outputs(equations, terms, system, (moved, _forces))
     graph = Graph({name: as_node(x) for name, x in outputs.items()})
-    return python_function(graph, [TIME, *problem.parameters, *problem.carried])
+    return python_function(graph, [TIME, *problem.parameters, *problem.carried_names])
 
 
 def _press_outputs(
@@ -272,7 +272,7 @@ class EventWatch:
     @cached_property
     def _places(self) -> dict[str, int]:
         """Place of what is carried in a state."""
-        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried)}
+        return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried_names)}
 
     @cached_property
     def _mode_places(self) -> dict[str, list[int]]:
@@ -453,7 +453,7 @@ class EventWatch:
     @cached_property
     def _trial(self) -> tuple[Array, Array, Callable[[], None]]:
         """A state, the one behind an attempt from it, and the attempt."""
-        count = HEADER + len(self.integration.problem.carried)
+        count = HEADER + len(self.integration.problem.carried_names)
         start, found = np.zeros((count, 1)), np.zeros((count, 1))
         return start, found, self.take.attempt_of(self._of_one_step, start, found)
 
@@ -575,14 +575,14 @@ class EventWatch:
         comes = {guard.number for guard in guards if guard.kind == FRICTION} - let_go
         turned = {guard.number for guard in guards if guard.kind == PRESSES}
         self._choose_modes(state, felt, let_go, comes, turned)
-        return self._closed(state)
+        return self._closed_state(state)
 
-    def _closed(self, state: Array) -> Array:
+    def _closed_state(self, state: Array) -> Array:
         """The state with everything that follows from its modes."""
         problem = self.integration.problem
         carried = state[HEADER:, 0].tolist()
-        if INDEPENDENCE in problem.carried:
-            carried[problem.carried.index(INDEPENDENCE)] = 0.0
+        if INDEPENDENCE in problem.carried_names:
+            carried[problem.carried_names.index(INDEPENDENCE)] = 0.0
         closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
         state[HEADER:, 0] = closed
         if any(
@@ -870,7 +870,7 @@ class EventWatch:
             for k, sense in senses.items():
                 self._set(state, "sense", k, sense)
             found = self._held_forces(state, felt, dict(held), let_go) if held else {}
-            forces = self._settled(state, felt, self._row_forces(state, felt, found), list(found))
+            forces = self._settled_forces(state, felt, self._row_forces(state, felt, found), list(found))
             limits = felt.presses.limits(forces)
             apart = max(abs(a - b) for k in limits for a, b in zip(limits[k], felt.limits[k], strict=True))
             size = max(abs(a) for k in limits for a in limits[k])
@@ -883,11 +883,11 @@ class EventWatch:
             self._set(state, "sense", k, sense)
         return felt
 
-    def _settled(self, state: Array, felt: ContactForces, forces: Array, held: Sequence[int]) -> Array:
+    def _settled_forces(self, state: Array, felt: ContactForces, forces: Array, held: Sequence[int]) -> Array:
         """Forces along rows with friction by coefficients of what slips as great as what presses."""
         slips = {k: (self._rows[k], self._get(state, "sense", k)) for k in self._pressed if k not in held}
         slips = {k: (row, sense) for k, (row, sense) in slips.items() if sense}
-        return felt.presses.settled(felt.mobility, self._independent(felt, held), forces, slips)
+        return felt.presses.settled_forces(felt.mobility, self._independent(felt, held), forces, slips)
 
     def _independent(self, felt: ContactForces, numbers: Iterable[int]) -> list[int]:
         """Rows of contacts: of what holds the same thing twice the first bears it, as in the steps."""
@@ -905,7 +905,7 @@ class EventWatch:
         if rows:
             right = felt.free + felt.mobility @ forces
             forces[rows] -= np.linalg.solve(felt.mobility[rows][:, rows], right[rows])
-        return self._settled(state, felt, forces, active)
+        return self._settled_forces(state, felt, forces, active)
 
     def _set_weights(
         self, state: Array, felt: ContactForces, held: Mapping[int, float], turned: Collection[int]

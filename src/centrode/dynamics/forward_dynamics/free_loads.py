@@ -13,7 +13,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     friction_contact,
     sensed_contact,
 )
-from centrode.dynamics.forward_dynamics.equations_of_motion import LoadAlong, Shaft
+from centrode.dynamics.forward_dynamics.equations_of_motion import DriveShaft, LoadAlong
 from centrode.dynamics.load_coordinates import Distance, Slide, Turn
 from centrode.dynamics.loads import (
     AppliedLoad,
@@ -59,7 +59,7 @@ class DriveLaw:
     uses: frozenset[str]
     levels: tuple[float, ...] = ()
     jumps: bool = False
-    sensed: bool = False
+    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
     by_place = False
 
@@ -92,12 +92,12 @@ def free_loads_of(
 
 def is_dry(term: LoadTerm) -> bool:
     """Whether an effort is friction with a dry part."""
-    return isinstance(term.amount, Friction) and term.amount.sensed
+    return isinstance(term.amount, Friction) and term.amount.depends_on_sense
 
 
 def has_sense(term: LoadTerm) -> bool:
     """Whether an effort has a force for each sense of a motion, friction aside."""
-    of_columns = isinstance(term.amount, LoadDiagram) and term.amount.sensed
+    of_columns = isinstance(term.amount, LoadDiagram) and term.amount.depends_on_sense
     return term.works is None and (term.gate is not None or of_columns)
 
 
@@ -135,7 +135,7 @@ def coordinate_of_drive(mechanism: Mechanism, drive: Drive) -> Turn | Slide | Di
     return Turn(drive.link) if mechanism.space == "sphere" else Turn(drive.link, drive.relative_to)
 
 
-def shafts_of(mechanism: Mechanism) -> tuple[Shaft, ...]:
+def shafts_of(mechanism: Mechanism) -> tuple[DriveShaft, ...]:
     """The shafts and the flywheel of `[machine]`, which turn with the only drive."""
     inertia = 0.0 if mechanism.machine is None else mechanism.machine.inertia
     if not inertia:
@@ -144,7 +144,7 @@ def shafts_of(mechanism: Mechanism) -> tuple[Shaft, ...]:
         what = _("shafts and a flywheel turn with the one drive, and there are {count}")
         raise InputError("[machine]", what.format(count=len(mechanism.drives)), _("describe them as links"))
     (drive,) = mechanism.drives
-    return (Shaft(drive, coordinate_of_drive(mechanism, drive), inertia),)
+    return (DriveShaft(drive, coordinate_of_drive(mechanism, drive), inertia),)
 
 
 def _without_branches(load: AppliedLoad, term: LoadTerm) -> LoadTerm:

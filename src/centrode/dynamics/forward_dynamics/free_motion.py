@@ -205,7 +205,7 @@ class FreeMotion:
             states,
             scheme,
             choose_executor(executor),
-            integration.problem.carried,
+            integration.problem.carried_names,
         )
 
 

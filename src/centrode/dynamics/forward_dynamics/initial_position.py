@@ -16,7 +16,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointValues,
     SlidPoint,
     SpanningTree,
-    TurnedLink,
+    TreeLink,
     rotor_jets,
 )
 from centrode.errors import InputError
@@ -245,7 +245,7 @@ def coordinates_at(
             coordinates[step.number] = float(numbers.space.slide(ARRAYS, at.points[step.point], pose, curve))
         elif isinstance(step, FreePoint):
             coordinates[step.first : step.first + 2] = [float(x) for x in at.points[step.point]]
-        elif isinstance(step, TurnedLink):
+        elif isinstance(step, TreeLink):
             value = angles.get(step.link) if step.measured else None
             if value is None or not isfinite(value):
                 value = _angle_of(step, numbers, at)
@@ -255,7 +255,7 @@ def coordinates_at(
     return coordinates
 
 
-def _angle_of(step: TurnedLink, numbers: Dimensions, at: Positions) -> float:
+def _angle_of(step: TreeLink, numbers: Dimensions, at: Positions) -> float:
     pose, place = at.poses[step.link], at.points[step.pivot]
     if not step.end:
         cosine, sine = pose.rotor

@@ -167,7 +167,7 @@ class MotionIntegration:
     def carried_values(self, start: InitialState) -> Array:
         """What the integrator carries (carried), at a state that closes."""
         names = self.names
-        found = dict.fromkeys(self.problem.carried, 0.0)
+        found = dict.fromkeys(self.problem.carried_names, 0.0)
         found |= dict(zip(names.coordinates, start.coordinates, strict=True))
         found |= dict(zip(names.speeds, start.speeds, strict=True))
         found |= dict(zip(names.states, states_of(self.equations.controls), strict=True))
@@ -180,7 +180,7 @@ class MotionIntegration:
         # rotors and flags are those of the start; the start itself is closed already
         kept = (*names.coordinates, *names.speeds, *names.works, *names.states)
         return np.array(
-            [found[name] if name in kept else float(closing[name]) for name in self.problem.carried]
+            [found[name] if name in kept else float(closing[name]) for name in self.problem.carried_names]
         )
 
     def explicit_steps(
@@ -209,7 +209,7 @@ class MotionIntegration:
             kept = [np.concatenate([[0.0], state[HEADER:, 0]])[None]]
         attempts, steps, room, rows = 0, 0, ROWS, np.empty((0, 0))
         ended, cause = DURATION, None
-        guard = HEADER + self.problem.carried.index(GUARD) if self.problem.guard else None
+        guard = HEADER + self.problem.carried_names.index(GUARD) if self.problem.guard else None
         events: list[Event] = []
         detours: list[Detour] = []
         while float(state[0, 0]) < duration:
@@ -369,9 +369,9 @@ class MotionIntegration:
         state = np.concatenate([lanes[:1], np.full((1, n), inf), np.zeros((2, n)), lanes[1:]])
         if not n:
             return rows[1:, :0]
-        guarded = [name for name in (LIMIT, GUARD) if name in self.problem.carried]
+        guarded = [name for name in (LIMIT, GUARD) if name in self.problem.carried_names]
         for name in guarded:
-            state[HEADER + self.problem.carried.index(name)] = NEVER if name == LIMIT else 0.0
+            state[HEADER + self.problem.carried_names.index(name)] = NEVER if name == LIMIT else 0.0
         found = self.integrator(executor).run(self.parameters(times, inf, 1.0, n), state, 1)[HEADER:]
         count = len(self.problem.unknowns)
         for detour in steps.detours:
@@ -397,7 +397,7 @@ class MotionIntegration:
         Beside a change point the speeds are those of equations that have nearly lost rank, and miss by what rounding
         makes of that. None where the distance is good already.
         """
-        carried, names = self.problem.carried, self.names
+        carried, names = self.problem.carried_names, self.names
         place = HEADER + carried.index(AHEAD)
         units = units_of(self.equations.tree, self.equations.numbers)
         fast = np.abs(state[HEADER:, 0][names.part(names.speeds)]) / units
@@ -433,7 +433,7 @@ class MotionIntegration:
 
         Returns the detour and the event, or why it is not passed.
         """
-        carried = list(self.problem.carried)
+        carried = list(self.problem.carried_names)
         row = {name: HEADER + carried.index(name) for name in (AHEAD, LOOKED, GUARD, LIMIT, INDEPENDENCE)}
         time, ahead, near = (
             float(state[0, 0]),

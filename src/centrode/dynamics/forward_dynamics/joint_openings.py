@@ -20,7 +20,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointValues,
     SlidPoint,
     SpanningTree,
-    TurnedLink,
+    TreeLink,
 )
 from centrode.dynamics.kinetostatics.equations import Teeth
 from centrode.dynamics.state import Centre, Radial
@@ -29,7 +29,6 @@ from centrode.model.mechanism import Mechanism
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import (
     Constraint,
-    Contact,
     DisplacementDrive,
     GearRatio,
     NoSlip,
@@ -37,6 +36,7 @@ from centrode.structure.constraints import (
     PointInLink,
     PointOnGuide,
     Positions,
+    TrackContact,
 )
 from centrode.structure.dimensions import Dimensions
 
@@ -147,7 +147,7 @@ def host_positions(
     point, link = "", None
     if isinstance(constraint, PointOnGuide | DisplacementDrive):
         point, link = constraint.point, mechanism.guide(constraint.guide).link
-    elif isinstance(constraint, Contact | NoSlip):
+    elif isinstance(constraint, TrackContact | NoSlip):
         point, link = constraint.centre, constraint.link
     if link is None:
         return at
@@ -179,7 +179,7 @@ def step_of(tree: SpanningTree, constraint: Constraint) -> int | None:
     for number, step in enumerate(tree.steps):
         match constraint:
             case PointInLink(point=point, link=link):
-                hangs = isinstance(step, TurnedLink | CarriedLink) and (step.link, step.pivot) == (
+                hangs = isinstance(step, TreeLink | CarriedLink) and (step.link, step.pivot) == (
                     link,
                     point,
                 )

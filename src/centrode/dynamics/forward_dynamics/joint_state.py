@@ -52,7 +52,7 @@ class JointState(State):
         place = self.known.get(f"point {name}")
         if place is None:
             unit = length_unit(self.mechanism)
-            place = tuple(self._scaled(x, unit) for x in self.at.points[name])
+            place = tuple(self._scaled_jet(x, unit) for x in self.at.points[name])
             self.known[f"point {name}"] = place
         assert isinstance(place, tuple)
         return place
@@ -101,7 +101,7 @@ class JointState(State):
         slid = self.numbers.space.slide(
             self.m, self.at.points[described.point], self.at.poses[described.on], self.numbers.curve(guide)
         )
-        return self._scaled(slid, length_unit(self.mechanism))
+        return self._scaled_jet(slid, length_unit(self.mechanism))
 
     def drive(self, drive: Drive) -> Jet:
         """Value of what a drive moves [rad or m], whether it has a law or not."""
@@ -120,6 +120,6 @@ class JointState(State):
         """A number as a jet of the state's order."""
         return number if isinstance(number, Jet) else self.constant(number)
 
-    def _scaled(self, number: Number, unit: float) -> Jet:
+    def _scaled_jet(self, number: Number, unit: float) -> Jet:
         jet = self.as_jet(number)
         return jet if unit == 1.0 else jet * unit

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
-from centrode.dynamics.forward_dynamics.contacts import Contact, Pressing, SmoothFriction
+from centrode.dynamics.forward_dynamics.contacts import Contact, JointPressing, SmoothFriction
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, LoadAlong
 from centrode.dynamics.load_coordinates import Component
 from centrode.dynamics.loads import (
@@ -61,7 +61,7 @@ def _map_contact(contact: Contact, function: Function) -> Contact:
     )
 
 
-def _map_pressing(pressing: Pressing, function: Function) -> Pressing:
+def _map_pressing(pressing: JointPressing, function: Function) -> JointPressing:
     return replace(
         pressing,
         kinetic=function(pressing.kinetic),

@@ -118,7 +118,7 @@ class MotionNames:
                     + len(equations.contacts)
                 )
             ),
-            tuple(f"counts {row}" for row in equations.flagged),
+            tuple(f"counts {row}" for row in equations.flagged_rows),
             tuple(f"active {k}" for k in range(len(equations.contacts))),
             tuple(f"sense {k}" for k in range(len(equations.contacts))),
             tuple(f"held {k}" for k in range(len(equations.contacts))),
@@ -261,7 +261,7 @@ def motion_problem(equations: EquationsOfMotion, parameters: Sequence[str]) -> I
         k: (variable(cosine), variable(sine))
         for k, cosine, sine in zip(tree.angles, names.cosines, names.sines, strict=True)
     }
-    rows = equations.flagged
+    rows = equations.flagged_rows
     modes = modes_of(names, variable)
     states = [variable(name) for name in names.states]
     flags = {row: m.less(0.5, variable(name)) for row, name in zip(rows, names.flags, strict=True)}
@@ -317,13 +317,13 @@ def _closing(
         )
         counted = {
             name: m.where(system.flags[row], 1.0, 0.0) if row in system.flags else 0.0
-            for row, name in zip(equations.flagged, names.flags, strict=True)
+            for row, name in zip(equations.flagged_rows, names.flags, strict=True)
         }
         counted |= _watch(equations, system.independence(m), w)
     if equations.has_events:
         chosen = {
             row: m.less(0.5, counted[name])
-            for row, name in zip(equations.flagged, names.flags, strict=True)
+            for row, name in zip(equations.flagged_rows, names.flags, strict=True)
             if not isinstance(counted[name], float)
         }
         counted |= {name: variable(name) for name in names.modes}

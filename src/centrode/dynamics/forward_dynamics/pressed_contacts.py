@@ -13,7 +13,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     FRICTION,
     Contact,
     ContactMode,
-    Pressing,
+    JointPressing,
     pressed_numbers,
 )
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
@@ -74,21 +74,21 @@ def _refuse_radial_forces(mechanism: Mechanism) -> None:
             raise NotComputedYet(f"[[loads]] {load.label}", what, repair)
 
 
-def _pressing_of_hinge(bearing: HingeBearing) -> Pressing:
+def _pressing_of_hinge(bearing: HingeBearing) -> JointPressing:
     joint = PointInLink(bearing.point, bearing.link)
-    return Pressing(
+    return JointPressing(
         (JointOpening(joint, "x"), JointOpening(joint, "y")),
         bearing.coefficient * bearing.radius,
         bearing.static * bearing.radius,
     )
 
 
-def _pressing_of_guide(mechanism: Mechanism, sliding: Sliding) -> Pressing:
+def _pressing_of_guide(mechanism: Mechanism, sliding: Sliding) -> JointPressing:
     guide = mechanism.guide(sliding.guide)
     openings = [JointOpening(PointOnGuide(guide.point, guide.id, guide.on), "across")]
     if sliding.link is not None and sliding.length:
         openings.append(JointOpening(NoTurning(sliding.link, guide.id, guide.on), "turn"))
-    return Pressing(tuple(openings), sliding.coefficient, sliding.static, sliding.length, sliding.height)
+    return JointPressing(tuple(openings), sliding.coefficient, sliding.static, sliding.length, sliding.height)
 
 
 def refuse_undetermined_presses(equations: EquationsOfMotion, coordinates: Array) -> None:

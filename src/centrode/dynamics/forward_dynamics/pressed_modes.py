@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.contacts import Contact
-from centrode.dynamics.forward_dynamics.reaction_friction import greatest_press, pressed_by
+from centrode.dynamics.forward_dynamics.reaction_friction import greatest_press, pressing_force
 from centrode.numerics.arrays import ARRAYS
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -71,14 +71,14 @@ class JointPresses:
             kinetic = contact.pressing.kinetic
             slips = [
                 kinetic
-                * float(pressed_by(ARRAYS, contact, *contact.pressing.parts(reaction, sense, kinetic)))
+                * float(pressing_force(ARRAYS, contact, *contact.pressing.parts(reaction, sense, kinetic)))
                 for sense in (1.0, -1.0)
             ]
             holds = [float(greatest_press(ARRAYS, contact, reaction, sense)) for sense in (1.0, -1.0)]
             found[k] = FrictionLimits(-slips[0], slips[1], min(-holds[0], -slips[0]), max(holds[1], slips[1]))
         return found
 
-    def settled(
+    def settled_forces(
         self, mobility: Array, held: Sequence[int], forces: Array, slips: Mapping[int, tuple[int, float]]
     ) -> Array:
         """Forces along rows (rows) with friction of what slips as great as what presses then; what is held follows.
@@ -150,7 +150,7 @@ class JointPresses:
                     assert contact.pressing is not None
                     reaction = [float(x) for x in gain[: len(contact.pressing.openings)]]
                     parts = contact.pressing.parts(reaction, 1.0, contact.pressing.kinetic)
-                    found[k] += contact.pressing.kinetic * float(pressed_by(ARRAYS, contact, *parts))
+                    found[k] += contact.pressing.kinetic * float(pressing_force(ARRAYS, contact, *parts))
         return found
 
     def solutions(self, number: int, reaction: Array, gain: Array, sense: float) -> int:

@@ -163,10 +163,10 @@ def greatest_press(m: Namespace, contact: Contact, reaction: Sequence[Number], s
     """The most [N or N m] that a contact holds which would slip in a sense."""
     assert contact.pressing is not None
     x, y = contact.pressing.parts(reaction, sense, contact.pressing.static)
-    return contact.pressing.static * pressed_by(m, contact, x, y)
+    return contact.pressing.static * pressing_force(m, contact, x, y)
 
 
-def pressed_by(m: Namespace, contact: Contact, x: Number, y: Number) -> Number:
+def pressing_force(m: Namespace, contact: Contact, x: Number, y: Number) -> Number:
     """What presses [N]: the length of the two numbers of a reaction, or the greater of them."""
     assert contact.pressing is not None
     if contact.pressing.is_round:
@@ -200,7 +200,7 @@ def uniqueness(m: Namespace, joints: Mapping[int, PressedJoint]) -> Number:
             x, y = joint.parts(gain)
             # what sticks feeds nothing
             slips = m.abs(joint.mode.sense)
-            matrix[k, number] = -(m.abs(joint.factor) * pressed_by(m, joint.contact, x, y)) * slips
+            matrix[k, number] = -(m.abs(joint.factor) * pressing_force(m, joint.contact, x, y)) * slips
         matrix[k, k] = 1.0 + matrix[k, k]
     least: Number = 1.0
     for at, k in enumerate(order):

@@ -78,7 +78,7 @@ class JointValues:
 
 
 @dataclass(frozen=True)
-class TurnedLink:
+class TreeLink:
     """A link that is hinged in a point whose place is known, turned by a coordinate.
 
     On the sphere the angle lies between its own arc from the hinge to `second` and the arc to `end` of the base;
@@ -217,14 +217,14 @@ class FreePoint:
         at.points[self.point] = values.coordinates[self.first], values.coordinates[self.first + 1]
 
 
-Placing: TypeAlias = TurnedLink | CarriedLink | CarriedPoint | SlidPoint | FreePoint
+Placing: TypeAlias = TreeLink | CarriedLink | CarriedPoint | SlidPoint | FreePoint
 
 
 def numbers_of(step: Placing) -> tuple[int, ...]:
     """Numbers of the coordinates that a step takes."""
     if isinstance(step, FreePoint):
         return step.first, step.first + 1
-    return (step.number,) if isinstance(step, TurnedLink | SlidPoint) else ()
+    return (step.number,) if isinstance(step, TreeLink | SlidPoint) else ()
 
 
 @dataclass(frozen=True)
@@ -248,7 +248,7 @@ class SpanningTree:
     @cached_property
     def pivots(self) -> Mapping[str, str]:
         """Link -> the point in which it hangs."""
-        return {step.link: step.pivot for step in self.steps if isinstance(step, TurnedLink | CarriedLink)}
+        return {step.link: step.pivot for step in self.steps if isinstance(step, TreeLink | CarriedLink)}
 
     @property
     def angles(self) -> tuple[int, ...]:
@@ -365,12 +365,12 @@ class _Builder:
         pivot = pivots[0]
         if not self.on_sphere:
             self.coordinates.append(JointCoordinate("angle", link))
-            self.steps.append(TurnedLink(link, pivot, number, FRAME))
+            self.steps.append(TreeLink(link, pivot, number, FRAME))
         else:
             base, end, measured = self._reference(link, pivot)
             second = next((p for p in self.mechanism.links[link].coordinates if p != pivot), "")
             self.coordinates.append(JointCoordinate("angle", link, base))
-            self.steps.append(TurnedLink(link, pivot, number, base, second, end, measured))
+            self.steps.append(TreeLink(link, pivot, number, base, second, end, measured))
         self._place(link, pivot)
 
     def _reference(self, link: str, pivot: str) -> tuple[str, str, bool]:

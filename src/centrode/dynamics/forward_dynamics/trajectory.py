@@ -129,7 +129,7 @@ def trajectory_of(
         terms = equations.terms(ARRAYS, values, w, times, modes, held)
         flags = {
             row: fixed[name] > 0.5
-            for row, name in zip(equations.flagged, names.flags, strict=True)
+            for row, name in zip(equations.flagged_rows, names.flags, strict=True)
             if modes is not None
         }
         moved = equations.motion(ARRAYS, terms, equations.system(ARRAYS, terms, flags or None))

@@ -39,7 +39,6 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import (
     FRAME,
     Constraint,
-    Contact,
     DisplacementDrive,
     Entity,
     GearRatio,
@@ -48,6 +47,7 @@ from centrode.structure.constraints import (
     PointOnGuide,
     Positions,
     Row,
+    TrackContact,
 )
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
@@ -498,7 +498,7 @@ def _host_link(constraint: Constraint, mechanism: Mechanism) -> str | None:
     """The link that takes what a constraint's row gives to a point; None where it is the pin itself."""
     if isinstance(constraint, (PointOnGuide, DisplacementDrive)):
         return mechanism.guide(constraint.guide).link
-    return constraint.link if isinstance(constraint, (Contact, NoSlip)) else None
+    return constraint.link if isinstance(constraint, (TrackContact, NoSlip)) else None
 
 
 # Matrices inverted at many positions, with what rounding makes of each.

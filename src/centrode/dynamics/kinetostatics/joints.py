@@ -14,11 +14,10 @@ from centrode.dynamics.wrenches import Vector, Wrench
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.expressions import Node
-from centrode.numerics.rounding import SAFETY
+from centrode.numerics.rounding_bounds import SAFETY
 from centrode.structure.constraints import (
     AngleDrive,
     Constraint,
-    Contact,
     DisplacementDrive,
     DistanceDrive,
     Entity,
@@ -27,6 +26,7 @@ from centrode.structure.constraints import (
     NoTurning,
     PointInLink,
     PointOnGuide,
+    TrackContact,
 )
 from centrode.structure.gearing import Straight
 
@@ -133,7 +133,7 @@ def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, A
     structure = forces.system.scheme.structure
     of_kind = {
         kind: [c for c in structure.constraints if isinstance(c, kind)]
-        for kind in (PointOnGuide, GearRatio, Contact, NoSlip)
+        for kind in (PointOnGuide, GearRatio, TrackContact, NoSlip)
     }
     samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
     # along the coordinates of the drives, as everything that is reduced to them
@@ -153,8 +153,8 @@ def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, A
         parts |= _of_guides(forces, of_kind[PointOnGuide])
     if of_kind[GearRatio]:
         parts |= _of_gears(forces, of_kind[GearRatio])
-    if of_kind[Contact]:
-        parts |= _of_wheels(forces, of_kind[Contact], of_kind[NoSlip])
+    if of_kind[TrackContact]:
+        parts |= _of_wheels(forces, of_kind[TrackContact], of_kind[NoSlip])
     return parts
 
 
@@ -212,7 +212,7 @@ def _of_wheels(
 ) -> dict[str, Array]:
     vectors, normal, along = [], [], []
     for contact, slip in zip(contacts, slips, strict=True):
-        assert isinstance(contact, Contact)
+        assert isinstance(contact, TrackContact)
         track = forces.system.numbers.gearing.track[contact.rolling]
         out = _force_of(forces.system.pulls[contact, 0])
         press, drag = _value(forces, contact), _value(forces, slip)

@@ -49,12 +49,12 @@ from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import (
     Constraint,
-    Contact,
     DisplacementDrive,
     PointInLink,
     PointOnGuide,
     Positions,
     Row,
+    TrackContact,
 )
 from centrode.structure.dimensions import dimensions_of
 
@@ -190,7 +190,7 @@ class InPlaneOfNodes(InPlane):
     def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
         wrenches = super().of_row(constraint, row, at, link)
         # what ties a point to a body pushes both at one place, with opposite forces
-        if isinstance(constraint, PointInLink | PointOnGuide | DisplacementDrive | Contact):
+        if isinstance(constraint, PointInLink | PointOnGuide | DisplacementDrive | TrackContact):
             first, *others = wrenches
             back = tuple(minus(0.0, x) for x in first.force)
             wrenches = (first, *(Wrench(other.body, back, first.at) for other in others))

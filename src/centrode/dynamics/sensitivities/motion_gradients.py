@@ -88,7 +88,7 @@ def motion_gradients(
     return MotionGradients(tuple(paths), motion, position, velocity)
 
 
-def _prepared(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
+def _prepared_motion(described: Mechanism, path: str, value: float) -> tuple[FreeMotion, InitialState]:
     changed = with_value(described, path, value)
     assert changed.simulation is not None
     setting = multibody_setting(changed, changed.simulation)
@@ -105,7 +105,7 @@ def _change(described: Mechanism, free: FreeMotion, path: str) -> tuple[dict[str
     places, speeds = np.zeros(size), np.zeros(size)
     for count, weight in WEIGHTS:
         for sense in (1.0, -1.0):
-            other, state = _prepared(described, path, value + sense * count * step)
+            other, state = _prepared_motion(described, path, value + sense * count * step)
             if not variables.fits(other.equations):
                 what = _("with another value the equations have other terms, so there is no derivative here")
                 raise InputError(path, what, _("give it a value other than zero"))

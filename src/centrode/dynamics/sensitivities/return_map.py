@@ -98,7 +98,7 @@ def periodic_motion(free: FreeMotion, start: InitialState, run_in: float) -> Per
     MotionError
         Nothing turns all the way round and no drive keeps its speed, or no regime is found near the motion then.
     """
-    search = _Search(free)
+    search = _RegimeSearch(free)
     period = search.period_of_drives()
     if period is not None:
         # states are compared after whole periods, when drives are where they were
@@ -117,7 +117,7 @@ def periodic_motion(free: FreeMotion, start: InitialState, run_in: float) -> Per
     return search.solve(InitialState(ahead.coordinates[0], ahead.speeds[0]), period, number)
 
 
-class _Search:
+class _RegimeSearch:
     """Newton's method on the return map of one mechanism."""
 
     def __init__(self, free: FreeMotion) -> None:
@@ -176,13 +176,13 @@ class _Search:
         rank = int(np.sum(sizes > RANK * max(float(np.max(sizes, initial=0.0)), 1e-300)))
         return np.asarray(right[rank:].T * self.units[:, None])
 
-    def closed(self, state: InitialState) -> InitialState:
+    def closed_state(self, state: InitialState) -> InitialState:
         """The state with positions and speeds that keep the closures."""
         integration = self.free.integration
         problem, names = integration.problem, integration.names
         parameters = dict(zip(problem.parameters, integration.parameters(1.0, 1.0, 1.0)[:, 0], strict=True))
         for _step in range(3):
-            carried = dict(zip(problem.carried, integration.carried_values(state), strict=True))
+            carried = dict(zip(problem.carried_names, integration.carried_values(state), strict=True))
             found = evaluate(problem.of_closing, carried | parameters | {TIME: 0.0, STEP: 1.0})
             state = InitialState(
                 np.array([float(found[name]) for name in names.coordinates]),
@@ -190,7 +190,7 @@ class _Search:
             )
         return state
 
-    def mapped(self, state: InitialState, period: float, free: Array) -> ChangedMotion:
+    def motion_over_period(self, state: InitialState, period: float, free: Array) -> ChangedMotion:
         """The motion over a period with its derivatives by the free directions of places and of speeds."""
         none = np.zeros(len(state.coordinates))
         changes = [InitialState(column, none) for column in free.T]
@@ -204,10 +204,10 @@ class _Search:
         turns: Array | None = None
         fast = 1.0
         for _step in range(MOST_STEPS):
-            state = self.closed(state)
+            state = self.closed_state(state)
             free = self.free_directions(state.coordinates)
             count = free.shape[1]
-            run = self.mapped(state, period, free)
+            run = self.motion_over_period(state, period, free)
             if turns is None:
                 turned = (run.coordinates[0] - state.coordinates) / (2.0 * np.pi)
                 turns = np.where(self.angles, np.round(turned), 0.0)

@@ -135,7 +135,7 @@ class VariationalEquations:
                 [x for one in self.directions for x in one.values()],
             ]
         )[:, None]
-        carried = dict(zip(base.carried, integration.carried_values(start), strict=True))
+        carried = dict(zip(base.carried_names, integration.carried_values(start), strict=True))
         for k, change in enumerate(changes):
             carried |= {change_of(name, k): 0.0 for name in base.unknowns}
             own = (
@@ -152,9 +152,9 @@ class VariationalEquations:
             for name in base.unknowns:
                 if name not in names.works:
                     carried[change_of(name, k)] = float(closed[change_of(name, k)])
-        values = [carried[name] for name in problem.carried]
+        values = [carried[name] for name in problem.carried_names]
         state = np.concatenate([[0.0, min(float(times[-1]), 0.01 / rate), 0.0, 0.0], values])[:, None]
-        rows = np.empty((len(times), len(problem.carried)))
+        rows = np.empty((len(times), len(problem.carried_names)))
         take = integrator_of(problem, executor)
         for number, time in enumerate(times):
             parameters[CONTROLS.index(END)] = time
@@ -171,7 +171,7 @@ class VariationalEquations:
             rows[number] = state[HEADER:, 0]
 
         def part(wanted: Sequence[str]) -> Array:
-            return rows[:, [problem.carried.index(name) for name in wanted]]
+            return rows[:, [problem.carried_names.index(name) for name in wanted]]
 
         return ChangedMotion(
             times, part(names.coordinates), part(names.speeds),

@@ -25,7 +25,7 @@ from centrode.dynamics.loads import (
 )
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.state import DriveMotion, State
 from centrode.dynamics.steady_motion.cycle import NODES, resolve_panels
 from centrode.errors import InputError, MotionError, Status
@@ -67,7 +67,10 @@ class Sorted:
         """Whether it may be another one for the other sense of motion."""
         effort = self.effort
         return (
-            effort.gate is not None or effort.works is not None or effort.amount.jumps or effort.amount.sensed
+            effort.gate is not None
+            or effort.works is not None
+            or effort.amount.jumps
+            or effort.amount.depends_on_sense
         )
 
     def energy(self, state: State) -> Number:

@@ -164,10 +164,10 @@ class StepSlopes:
         places = {row: k for k, row in enumerate([*series, *single])}
         side = RightSide(tuple(places.get(row, NOTHING) for row in each), tuple(acting))
         if side not in self.functions:
-            self.functions[side] = self._traced(side)
+            self.functions[side] = self._traced_function(side)
         return series, [row[0] for row in single], self.functions[side]
 
-    def _traced(self, side: RightSide) -> Function:
+    def _traced_function(self, side: RightSide) -> Function:
         """A function of time, value and rate of the drive and the values of the series, laws and all."""
         t, q, rate = variable("t"), variable("q"), variable("rate")
         count = max(side.places) + 1

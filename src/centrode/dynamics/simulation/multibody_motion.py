@@ -20,7 +20,7 @@ from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
 from centrode.dynamics.state import length_unit
 from centrode.errors import STATUSES_OF_MOTION, InputError, Status
@@ -55,7 +55,7 @@ OCCASIONS = ("crossing", "near miss", "doubtful", *KINDS[2:])
 
 # one mechanism is often simulated again, with other speeds and times: its equations are those that it had
 @kept_by_mechanism(32)
-def _prepared(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMotion:
+def _prepared_motion(mechanism: Mechanism, keeps: tuple[str, ...], law: str) -> FreeMotion:
     """The equations of a mechanism with drives that keep their laws, and a moment or force along the first drive."""
     return free_motion_of(mechanism.with_drives_held(), keeps, driving_efforts(mechanism, law))
 
@@ -107,7 +107,7 @@ class MultibodySetting:
     @cached_property
     def free(self) -> FreeMotion:
         """The mechanism prepared."""
-        return _prepared(self.mechanism, self.settings.keeps, self.settings.law)
+        return _prepared_motion(self.mechanism, self.settings.keeps, self.settings.law)
 
     @property
     def coordinates(self) -> tuple[DriveCoordinate, ...]:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.equation_of_motion import (
     CREEP,
     NEAR_LIMIT,
@@ -81,7 +81,7 @@ class ReducedSetting:
     rate: float
 
     @property
-    def prepared(self) -> Ready:
+    def prepared_mechanism(self) -> Ready:
         """The mechanism with its plan; one that keeps its assembly is prepared as one that passes change points."""
         return self.rows.reducer.ready
 
@@ -141,7 +141,7 @@ class ReducedSetting:
 
     @property
     def _unit(self) -> float:
-        return self.prepared.kinematics.path.unit
+        return self.prepared_mechanism.kinematics.path.unit
 
     def _check_start(self, tracks: PanelTracks) -> None:
         """Refuse a start at a dead point, or where the mechanism does not get to."""
@@ -225,7 +225,7 @@ def reduced_dataset(
     moving = senses != 0.0
     # at rest acceleration is zero, whatever forces would ask for: friction holds
     acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
-    solved = solve(setting.prepared, SampleGrid(times, states[VALUE], states[RATE], acceleration))
+    solved = solve(setting.prepared_mechanism, SampleGrid(times, states[VALUE], states[RATE], acceleration))
     unit = solved.ready.parameter.units[0]
     curves = _curves(setting, states, forces, acceleration, moving)
     curves_named = {
@@ -352,7 +352,7 @@ def simulate_reduced(
     if at is None and setting.settings.at:
         at = setting.settings.at
     count = setting.settings.samples if at is None else np.size(at)
-    check_size(layout_of(setting.prepared.kinematics), 1, count)
+    check_size(layout_of(setting.prepared_mechanism.kinematics), 1, count)
     course = reduced_trajectory(setting, progress)
     return reduced_dataset(setting, course, _times(setting, course, at), motion=motion)
 

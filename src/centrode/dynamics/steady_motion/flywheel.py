@@ -13,7 +13,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import FlywheelShape
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 
 # Sizes of flywheels of a given moment of inertia: a rim on thin spokes, a disc.
 #

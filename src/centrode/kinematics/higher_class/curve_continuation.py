@@ -27,9 +27,9 @@ from centrode.kinematics.higher_class.curves import (
 )
 from centrode.kinematics.higher_class.loop_closure import LoopClosure
 from centrode.kinematics.higher_class.newton import SMALL, newton
-from centrode.kinematics.higher_class.parameter_continuation import Course, walk_by_parameter
+from centrode.kinematics.higher_class.parameter_continuation import WalkerCourse, walk_by_parameter
 from centrode.kinematics.higher_class.system import Surroundings, needed_positions, total
-from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.structure.constraints import Positions
 
 # The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
@@ -354,7 +354,7 @@ class Rounds:
         return np.asarray(gap <= SMALL)
 
 
-def repeat_event(event: Event, tracks: CurveTracks, extent: tuple[float, float]) -> list[Event]:
+def repeat_event(event: RadicandZero, tracks: CurveTracks, extent: tuple[float, float]) -> list[RadicandZero]:
     """An event of the first round of a closed curve on all rounds of an extent; any other alone."""
     side = int(event.at > tracks.initial)
     period, away = float(tracks.period[event.lane, side]), abs(event.at - tracks.initial)
@@ -421,13 +421,13 @@ def trace(
     extent: tuple[float, float],
     reaches: Array,
     smooth: bool,
-) -> tuple[CurveTracks, list[Event]]:
+) -> tuple[CurveTracks, list[RadicandZero]]:
     """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way.
 
     `reaches` (lanes, 2) are the nearest limits of the groups before it, where what it stands on ends.
     """
     walkers = _setting_out(around, start, initial, extent)
-    events: list[Event] = []
+    events: list[RadicandZero] = []
     # strides are bounded, so that a curve which winds for ever inside the range is given up
     most = MOST * (1.0 + float(np.max(np.abs(walkers.end - initial))) / around.unit)
     while walkers.active.any() and most > 0:
@@ -500,7 +500,7 @@ def _by_parameter(
 ) -> Mask:
     """Follow walkers by the parameter as far as it goes; puts there where they have come to, says which have ended."""
 
-    def closed(who: Lanes, courses: Sequence[Course]) -> list[np.intp]:
+    def closed_courses(who: Lanes, courses: Sequence[WalkerCourse]) -> list[np.intp]:
         reached = np.array([courses[walker].parameter[-1] for walker in who])
         passing = rounds.passing(who, reached)
         if not passing.any():
@@ -513,7 +513,7 @@ def _by_parameter(
             trails[int(walker)].period = period
         return [walker for walker, _period in round_again]
 
-    courses = walk_by_parameter(around, loops, rounds.lane, state, float(parameter[0]), ends, closed)
+    courses = walk_by_parameter(around, loops, rounds.lane, state, float(parameter[0]), ends, closed_courses)
     for walker, course in enumerate(courses):
         if not course.regular:
             # what lies between two places has to be looked at from near by: all the way is gone along the curve
@@ -527,7 +527,7 @@ def _by_parameter(
     return np.array([course.ended for course in courses])
 
 
-def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) -> list[Event]:
+def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) -> list[RadicandZero]:
     """Go on with some walkers by one step; returns the events on the way."""
     here = walkers.here.of(who)
     parameter, state = _foretold(around, walkers, who, here)
@@ -545,7 +545,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
         crossed = good & (np.sign(there.places.size) != np.sign(here.size))
         # a change of sign is looked into from near by, where a crossing and a near miss are told apart
         good &= ~crossed | (step <= CAUTIOUS)
-    events: list[Event] = []
+    events: list[RadicandZero] = []
     passed = np.full(len(who), np.nan)
     for k in np.nonzero(crossed & good)[0]:
         walker = np.array([k])
@@ -554,7 +554,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
             good[k] = False  # the curves only come near each other
         else:
             passed[k] = at
-            events.append(Event("change point", around.group, int(walkers.lane[who[k]]), at))
+            events.append(RadicandZero("change point", around.group, int(walkers.lane[who[k]]), at))
     _shorten(walkers, who[~good])
     # the parameter runs against the sense of the way: it has turned back, so a limit was passed
     ends = good & (there.places.along[:, -1] * walkers.forward[who] <= 0.0)
@@ -630,7 +630,7 @@ def _go_on(
 
 def _turn_back(
     around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePlaces, there: ReachedPlace
-) -> list[Event]:
+) -> list[RadicandZero]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
     # from nearer by, the polynomial between the places foretells the limit better
@@ -648,5 +648,5 @@ def _turn_back(
         trail.end, trail.limit, trail.margin = "limit", at, float(limit.margin[k])
         trail.state = limit.reached.places.state[k]
         backwards = bool(walkers.forward[walker] < 0.0)
-        events.append(Event("limit", around.group, int(walkers.lane[walker]), at, backwards))
+        events.append(RadicandZero("limit", around.group, int(walkers.lane[walker]), at, backwards))
     return events

@@ -24,7 +24,7 @@ from centrode.kinematics.higher_class.newton import (
 from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, total
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

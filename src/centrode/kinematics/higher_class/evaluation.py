@@ -23,7 +23,7 @@ from centrode.kinematics.higher_class.system import (
 )
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.numerics.rounding import RoundedFunctions
+from centrode.numerics.rounding_bounds import RoundedFunctions
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 

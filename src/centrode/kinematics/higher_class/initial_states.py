@@ -19,7 +19,7 @@ from centrode.kinematics.plan_evaluation import rotor_of_angle
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.rounding import ROUNDED, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions

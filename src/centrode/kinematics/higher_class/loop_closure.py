@@ -21,7 +21,7 @@ from centrode.kinematics.higher_class.elimination import Follow, pattern_of
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import Rounded
+from centrode.numerics.rounding_bounds import Rounded
 from centrode.structure.constraints import FRAME, Constraint, Entity, PointInLink, PointOnGuide, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
@@ -95,13 +95,13 @@ class LoopClosure:
         unit: Array = self._units[2 * self.free + free]
         return unit
 
-    def _carried(self, link: str, local: Any) -> Vectors:
+    def _point_vectors(self, link: str, local: Any) -> Vectors:
         """From the origin of a link to its point."""
         (cosine, sine), (a, b) = self._rotors[link], local
         return a * cosine - b * sine, b * cosine + a * sine
 
     def _place(self, link: str, local: Any) -> Vectors:
-        (x, y), (p, q) = self._origins[link], self._carried(link, local)
+        (x, y), (p, q) = self._origins[link], self._point_vectors(link, local)
         return x + p, y + q
 
     def _follow(self, follow: Follow) -> None:
@@ -121,7 +121,7 @@ class LoopClosure:
             at = scale * self._coordinate(follow.first), scale * self._coordinate(follow.first + 1)
         else:
             at = self._places[by.point]
-        x, y = self._carried(name, self._pivot(follow))
+        x, y = self._point_vectors(name, self._pivot(follow))
         self._origins[name] = at[0] - x, at[1] - y
 
     def _pivot(self, follow: Follow) -> Any:

@@ -20,7 +20,7 @@ from centrode.kinematics.higher_class.system import (
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import UNIT_ROUNDOFF
 from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -46,7 +46,7 @@ FAST = 8.0
 
 
 @dataclass
-class Course:
+class WalkerCourse:
     """Places of one walker: `parameter` and states with their first and second Taylor coefficients by it."""
 
     parameter: list[float] = field(default_factory=list)
@@ -74,7 +74,7 @@ class Course:
         return pieces
 
 
-Closed: TypeAlias = Callable[[Lanes, Sequence[Course]], Sequence[np.intp]]
+Closed: TypeAlias = Callable[[Lanes, Sequence[WalkerCourse]], Sequence[np.intp]]
 """Which of some walkers have come round with their last steps."""
 
 
@@ -98,10 +98,10 @@ class _Ahead:
 
     def _block(self, block: int) -> Array:
         if block not in self.blocks:
-            self.blocks[block] = self._computed(block)
+            self.blocks[block] = self._computed_block(block)
         return self.blocks[block]
 
-    def _computed(self, block: int) -> Array:
+    def _computed_block(self, block: int) -> Array:
         count = min(BLOCK, self.most + 1 + BEYOND - block * BLOCK)
         walkers = len(self.lane)
         number = np.tile(np.arange(count) + block * BLOCK, walkers)
@@ -113,7 +113,7 @@ class _Ahead:
 
 
 @dataclass
-class _Places:
+class _WalkerPlaces:
     """Where walkers stand.
 
     Attributes
@@ -130,7 +130,7 @@ class _Places:
     direction: Array
 
     @classmethod
-    def at(cls, loops: LoopClosure, free: Array, whole: Array, known: Array, unit: float) -> _Places:
+    def at(cls, loops: LoopClosure, free: Array, whole: Array, known: Array, unit: float) -> _WalkerPlaces:
         """Places where the equations hold."""
         numbers = loops.numbers(free, whole, known[0])
         matrix = loops.matrix(numbers)
@@ -140,11 +140,11 @@ class _Places:
         pace = np.sqrt(total(along * along))
         return cls(series, np.linalg.det(matrix), pace, along / pace[:, None])
 
-    def of(self, which: Mask) -> _Places:
+    def of(self, which: Mask) -> _WalkerPlaces:
         """Some of the places."""
-        return _Places(self.series[:, which], self.size[which], self.pace[which], self.direction[which])
+        return _WalkerPlaces(self.series[:, which], self.size[which], self.pace[which], self.direction[which])
 
-    def put(self, which: Lanes, others: _Places) -> None:
+    def put(self, which: Lanes, others: _WalkerPlaces) -> None:
         """Put others in some of the places."""
         self.series[:, which], self.size[which] = others.series, others.size
         self.pace[which], self.direction[which] = others.pace, others.direction
@@ -158,9 +158,9 @@ def walk_by_parameter(
     initial: float,
     ends: Array,
     closed: Closed,
-) -> list[Course]:
+) -> list[WalkerCourse]:
     """Follow walkers from states (k, width) in the initial position towards the ends (k,) of their ways."""
-    courses = [Course() for _walker in lane]
+    courses = [WalkerCourse() for _walker in lane]
     pitch = PITCH * around.unit
     steps = np.where(ends < initial, -pitch, pitch)
     most = np.ceil(np.abs(ends - initial) / pitch).astype(np.intp)
@@ -168,7 +168,7 @@ def walk_by_parameter(
     ahead = _Ahead(around, loops, lane, initial, steps, most)
     free, whole = loops.free_of(start)
     with np.errstate(all="ignore"):
-        here = _Places.at(loops, free, whole, ahead.known(everyone, number), around.unit)
+        here = _WalkerPlaces.at(loops, free, whole, ahead.known(everyone, number), around.unit)
         for walker, course in enumerate(courses):
             course.add(initial, here.series[:, walker], float(np.sign(here.size[walker])))
         # polynomials of the last steps in the share of these: to begin with there are none
@@ -189,7 +189,7 @@ def walk_by_parameter(
             known = ahead.known(who, number[who] + stride)
             way = stride * PITCH * here.pace[who]
             found, reached, wrong = _newton(loops, foretold - whole[who], whole[who], known[0], way)
-            there = _Places.at(loops, reached, whole[who], known, around.unit)
+            there = _WalkerPlaces.at(loops, reached, whole[who], known, around.unit)
             good = (
                 found & (wrong <= TRUST * way) & (there.pace <= FAST) & (there.size / here.size[who] >= LEFT)
             )
@@ -221,7 +221,7 @@ def walk_by_parameter(
     return courses
 
 
-def _is_regular(loops: LoopClosure, course: Course, ahead: _Ahead, walker: int, whole: Array) -> bool:
+def _is_regular(loops: LoopClosure, course: WalkerCourse, ahead: _Ahead, walker: int, whole: Array) -> bool:
     """Whether the determinant keeps its sign in all places that the steps of a walker have passed."""
     edges = np.array(course.parameter)
     ways = np.diff(edges)

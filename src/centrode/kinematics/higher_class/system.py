@@ -35,7 +35,7 @@ from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
-from centrode.numerics.rounding import ROUNDED, Rounded
+from centrode.numerics.rounding_bounds import ROUNDED, Rounded
 from centrode.structure.constraints import Constraint, Entity, PointInLink, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening, ScreenedEvents
 from centrode.kinematics.machine_code.events import Eventful
 from centrode.kinematics.machine_code.outputs import (
     RESIDUAL,
@@ -119,7 +119,11 @@ class _Many:
 
     def solve(self, progress: Progress | None, given: GivenRoom | None) -> Solved:
         writer = Writer(
-            self._outputs(), self._inputs, MACHINE_CODE, sparing=not self.plan.steps, judged=self._judged
+            self._outputs(),
+            self._inputs,
+            MACHINE_CODE,
+            sparing=not self.plan.steps,
+            judged=self._lane_extremes,
         )
         room = self._room(writer, given)
         clear = self._write(writer, room, progress)
@@ -157,7 +161,7 @@ class _Many:
         return None if slack is None else box_array([slack]).reshape(1, 1)
 
     @property
-    def _judged(self) -> dict[str, LaneExtreme]:
+    def _lane_extremes(self) -> dict[str, LaneExtreme]:
         """Extremes over samples, taken while these are written: greatest residual, least slack of radicands."""
         if self.plan.steps:
             return {}

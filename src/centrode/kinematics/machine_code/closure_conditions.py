@@ -26,7 +26,7 @@ from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node
 from centrode.numerics.jets import Jet
 from centrode.numerics.scans import Reduction
 from centrode.numerics.trigonometric_polynomials import (
-    Extremes,
+    PolynomialExtremes,
     factors_of,
     minus,
     plus,
@@ -65,8 +65,8 @@ class ClosureConditions:
     divisors : group -> its extremes
     """
 
-    radicands: Mapping[int, Sequence[Extremes]]
-    divisors: Mapping[int, Extremes]
+    radicands: Mapping[int, Sequence[PolynomialExtremes]]
+    divisors: Mapping[int, PolynomialExtremes]
     names: tuple[str, ...]
 
     @classmethod
@@ -81,7 +81,7 @@ class ClosureConditions:
         if not all(x in polynomials for some in (*factors.values(), divisors.values()) for x in some):
             return None
 
-        def ends(node: Node) -> Extremes:
+        def ends(node: Node) -> PolynomialExtremes:
             return polynomials[node].extremes(low, high)
 
         return cls(

@@ -16,8 +16,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import SLACK
-from centrode.kinematics.machine_code.frame_code import Answer, Slot, Task, frame_text
+from centrode.kinematics.machine_code.event_free_mechanisms import SLACK
+from centrode.kinematics.machine_code.frame_code import FrameAnswer, FrameSlot, Task, frame_text
 from centrode.kinematics.machine_code.frame_kernels import (
     COSINES,
     RESIDUAL,
@@ -47,7 +47,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 Given: TypeAlias = Sequence[float]
 MOVE, TURN, JUDGE, CALL = (int(x) for x in (Task.MOVE, Task.TURN, Task.JUDGE, Task.CALL))
-CLEAR, WINDINGS = int(Answer.CLEAR), int(Answer.WINDINGS)
+CLEAR, WINDINGS = int(FrameAnswer.CLEAR), int(FrameAnswer.WINDINGS)
 
 
 WORTH_A_KERNEL = 40
@@ -134,14 +134,14 @@ class _Row:
     def __init__(self, places: Sequence[int]) -> None:
         self.numbers = np.zeros(len(places))
         self._pack: Callable[..., None] = struct.Struct(f"{len(places)}d").pack_into
-        self._pick = _picked(places)
+        self._pick = _picker(places)
 
     def fill(self, numbers: list[Any]) -> None:
         """Take them from the list."""
         self._pack(self.numbers, 0, *self._pick(numbers))
 
 
-def _picked(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:
+def _picker(places: Sequence[int]) -> Callable[[list[Any]], Sequence[Any]]:
     """What gives the numbers at some places of a list; twice as fast as one after the other."""
     if len(places) < 2:
         return lambda numbers: [numbers[k] for k in places]
@@ -186,7 +186,7 @@ class PlainFunction:
 
     def for_thread(self) -> Callable[[Given], Sequence[float]]:
         """The function of the numbers at the paths, with memory of its own."""
-        constants, ends = self._constants, _picked(self._ends)
+        constants, ends = self._constants, _picker(self._ends)
         stages: list[Callable[[list[Any]], None]] = []
         left: _KernelRow | None = None
         for stage in self._stages:
@@ -225,10 +225,10 @@ def _stage_of(inner: Sequence[Node], places: dict[Node, int], later: Container[N
     known = dict(places)
     asked = [node for node in exact if node in later]
 
-    def replaced(node: Node, _arguments: tuple[Node, ...]) -> Node | None:
+    def replaced_node(node: Node, _arguments: tuple[Node, ...]) -> Node | None:
         return variable(str(known[node])) if node in known and node.operation != CONSTANT else None
 
-    graph = Graph(rebuilt({str(k): node for k, node in enumerate(asked)}, replaced))
+    graph = Graph(rebuilt({str(k): node for k, node in enumerate(asked)}, replaced_node))
     scan = Scan((), graph.variables, graph.outputs)
     kernel = streamer(scan, np.empty((0, LANES)), MACHINE_CODE, hasty=True)
     first = len(places)
@@ -268,34 +268,34 @@ class CalledMemory(FrameMemory):
 
     def _table(self, called: CalledFrames) -> Numbers:
         kernels, judge = called.kernels, called.kernels.judge
-        table = np.zeros(Slot.COUNT, dtype=np.int64)
+        table = np.zeros(FrameSlot.COUNT, dtype=np.int64)
         rooms = (self.mesh, self.sparse, self.room)
-        first = (Slot.MESH, Slot.SPARSE, Slot.SAMPLES)
+        first = (FrameSlot.MESH, FrameSlot.SPARSE, FrameSlot.SAMPLES)
         for scan, slot, room, inputs in zip(kernels.scans, first, rooms, self.inputs, strict=True):
             arguments = bare_call(scan.take, inputs, room)
             assert arguments is not None
             table[slot : slot + len(arguments)] = arguments
         for slot, which in zip(
-            (Slot.FOR_MESH, Slot.FOR_SPARSE, Slot.FOR_SAMPLES), called.gathers, strict=True
+            (FrameSlot.FOR_MESH, FrameSlot.FOR_SPARSE, FrameSlot.FOR_SAMPLES), called.gathers, strict=True
         ):
             table[slot], table[slot + 1] = which.ctypes.data, len(which)
         layout = judge.layout
-        table[Slot.VALUES] = self.values.ctypes.data
-        table[Slot.LEAST] = len(layout.least)
-        table[Slot.ROWS] = len(layout.least) + len(layout.greatest)
-        table[Slot.REDUCED] = self.values[called.first_reduced :].ctypes.data
-        table[Slot.CONDITIONS] = called.conditions.ctypes.data
-        table[Slot.CONDITIONS + 1] = len(called.conditions)
-        table[Slot.LINKS], table[Slot.START] = len(layout.links), judge.start
-        table[Slot.AT_START] = judge.at_start.ctypes.data
-        table[Slot.WOUND] = self.wound.ctypes.data
-        table[Slot.CENTRES] = self.values[called.first_centre :].ctypes.data
-        table[Slot.RESIDUAL] = address_of(self.rows[RESIDUAL])
+        table[FrameSlot.VALUES] = self.values.ctypes.data
+        table[FrameSlot.LEAST] = len(layout.least)
+        table[FrameSlot.ROWS] = len(layout.least) + len(layout.greatest)
+        table[FrameSlot.REDUCED] = self.values[called.first_reduced :].ctypes.data
+        table[FrameSlot.CONDITIONS] = called.conditions.ctypes.data
+        table[FrameSlot.CONDITIONS + 1] = len(called.conditions)
+        table[FrameSlot.LINKS], table[FrameSlot.START] = len(layout.links), judge.start
+        table[FrameSlot.AT_START] = judge.at_start.ctypes.data
+        table[FrameSlot.WOUND] = self.wound.ctypes.data
+        table[FrameSlot.CENTRES] = self.values[called.first_centre :].ctypes.data
+        table[FrameSlot.RESIDUAL] = address_of(self.rows[RESIDUAL])
         if SLACK_AT_SAMPLES in self.rows:
-            table[Slot.SLACK] = address_of(self.rows[SLACK_AT_SAMPLES])
-        table[Slot.TURNED], table[Slot.ANGLES] = len(kernels.angles), self.angles.ctypes.data
-        table[Slot.WOUND_AT_SAMPLES] = self.wound_at_samples.ctypes.data
-        table[Slot.ANGLE_ROWS] = self._angle_rows.ctypes.data
+            table[FrameSlot.SLACK] = address_of(self.rows[SLACK_AT_SAMPLES])
+        table[FrameSlot.TURNED], table[FrameSlot.ANGLES] = len(kernels.angles), self.angles.ctypes.data
+        table[FrameSlot.WOUND_AT_SAMPLES] = self.wound_at_samples.ctypes.data
+        table[FrameSlot.ANGLE_ROWS] = self._angle_rows.ctypes.data
         return table
 
 
@@ -391,7 +391,7 @@ class CalledFrames:
             self.run(memory.address, TURN)
         return True
 
-    def judged(self, given: Given, memory: CalledMemory) -> Known | None:
+    def judged_variables(self, given: Given, memory: CalledMemory) -> Known | None:
         """The variables of a mechanism that is clear at the nodes; None of another."""
         if not self._runs(given, memory, JUDGE):
             return None

@@ -19,7 +19,7 @@ CALL = 1 + len(ARGUMENTS)
 """Slots of a kernel: its address and its arguments."""
 
 
-class Slot(IntEnum):
+class FrameSlot(IntEnum):
     """Places in the table of a frame: numbers, or addresses of rows of numbers."""
 
     MESH = 0
@@ -47,7 +47,7 @@ class Slot(IntEnum):
     COUNT = VALUES + 23
 
 
-class Answer(IntEnum):
+class FrameAnswer(IntEnum):
     """What the function gives back."""
 
     NOT_CLEAR = 0
@@ -152,7 +152,7 @@ entry:
   %inputs.slot = add i64 %kernel, 5
   %inputs.at = getelementptr i64, ptr %table, i64 %inputs.slot
   %inputs = load ptr, ptr %inputs.at, align 8
-{_slot("values", Slot.VALUES, "ptr")}
+{_slot("values", FrameSlot.VALUES, "ptr")}
   %some = icmp sgt i64 %count, 0
   br i1 %some, label %loop, label %done
 loop:
@@ -186,7 +186,7 @@ def _call() -> str:
     return "\n".join([*lines, f"  call void %kernel({arguments})", "  ret void", "}"])
 
 
-def _rounded(name: str, value: str) -> str:
+def _nearest_whole(name: str, value: str) -> str:
     """The nearest whole number, as `whole_turns` rounds it."""
     return (
         f"  %{name}.up = fadd double {value}, {_number(WHOLE)}\n"
@@ -214,7 +214,7 @@ loop:
   %angle = load double, ptr %angle.at, align 8
   %way = fsub double %angle, %last
   %share = fmul double %way, {_number(-1.0 / TURN)}
-{_rounded("step", "%share")}
+{_nearest_whole("step", "%share")}
   %turned = fadd double %turns, %step
   %back = fmul double %step, {_number(TURN)}
   %jump = fadd double %way, %back
@@ -239,7 +239,7 @@ loop:
 judge:
   %from = fsub double %initial, %there
   %from.share = fmul double %from, {_number(1.0 / TURN)}
-{_rounded("turn", "%from.share")}
+{_nearest_whole("turn", "%from.share")}
   %from.back = fmul double %turn, {_number(TURN)}
   %left = fsub double %from, %from.back
   %left.size = call double @llvm.fabs.f64(double %left)
@@ -269,12 +269,12 @@ def _turn(width: int) -> str:
     return f"""
 define internal void @turn(ptr %table) {{
 entry:
-{_slot("count", Slot.SAMPLES + 1)}
-{_slot("many", Slot.TURNED)}
-{_slot("angles", Slot.ANGLES, "ptr")}
-{_slot("wound", Slot.WOUND_AT_SAMPLES, "ptr")}
-{_slot("rows", Slot.ANGLE_ROWS, "ptr")}
-{_slot("centres", Slot.CENTRES, "ptr")}
+{_slot("count", FrameSlot.SAMPLES + 1)}
+{_slot("many", FrameSlot.TURNED)}
+{_slot("angles", FrameSlot.ANGLES, "ptr")}
+{_slot("wound", FrameSlot.WOUND_AT_SAMPLES, "ptr")}
+{_slot("rows", FrameSlot.ANGLE_ROWS, "ptr")}
+{_slot("centres", FrameSlot.CENTRES, "ptr")}
   %last = sub i64 %count, {width}
   %some = icmp sgt i64 %many, 0
   br i1 %some, label %link, label %done
@@ -324,17 +324,17 @@ def _move() -> str:
     return f"""
 define internal i64 @move(ptr %table, i64 %task) {{
 entry:
-{_slot("rows", Slot.ROWS)}
+{_slot("rows", FrameSlot.ROWS)}
   %judged = icmp sgt i64 %rows, 0
   br i1 %judged, label %mesh, label %turning
 mesh:
-  call void @gather(ptr %table, i64 {Slot.FOR_MESH}, i64 {Slot.MESH})
-  call void @call(ptr %table, i64 {Slot.MESH})
-{_slot("nodes", Slot.MESH + 1)}
-{_slot("room", Slot.MESH + 11, "ptr")}
-{_slot("stride", Slot.MESH + 12)}
-{_slot("least", Slot.LEAST)}
-{_slot("reduced", Slot.REDUCED, "ptr")}
+  call void @gather(ptr %table, i64 {FrameSlot.FOR_MESH}, i64 {FrameSlot.MESH})
+  call void @call(ptr %table, i64 {FrameSlot.MESH})
+{_slot("nodes", FrameSlot.MESH + 1)}
+{_slot("room", FrameSlot.MESH + 11, "ptr")}
+{_slot("stride", FrameSlot.MESH + 12)}
+{_slot("least", FrameSlot.LEAST)}
+{_slot("reduced", FrameSlot.REDUCED, "ptr")}
   br label %row
 row:
   %r = phi i64 [ 0, %mesh ], [ %r.next, %row.end ]
@@ -356,8 +356,8 @@ row.end:
   %r.more = icmp slt i64 %r.next, %rows
   br i1 %r.more, label %row, label %conditions
 conditions:
-{_slot("pairs", Slot.CONDITIONS, "ptr")}
-{_slot("pair.count", Slot.CONDITIONS + 1)}
+{_slot("pairs", FrameSlot.CONDITIONS, "ptr")}
+{_slot("pair.count", FrameSlot.CONDITIONS + 1)}
   %some = icmp sgt i64 %pair.count, 0
   br i1 %some, label %condition, label %turning
 condition:
@@ -386,19 +386,19 @@ condition.met:
   %c.more = icmp slt i64 %c.next, %pair.count
   br i1 %c.more, label %condition, label %turning
 turning:
-{_slot("links", Slot.LINKS)}
+{_slot("links", FrameSlot.LINKS)}
   %turns = icmp sgt i64 %links, 0
   br i1 %turns, label %sparse, label %judged.nodes
 sparse:
-  call void @gather(ptr %table, i64 {Slot.FOR_SPARSE}, i64 {Slot.SPARSE})
-  call void @call(ptr %table, i64 {Slot.SPARSE})
-{_slot("sparse.count", Slot.SPARSE + 1)}
-{_slot("sparse.room", Slot.SPARSE + 11, "ptr")}
-{_slot("sparse.stride", Slot.SPARSE + 12)}
-{_slot("start", Slot.START)}
-{_slot("initial", Slot.AT_START, "ptr")}
-{_slot("wound", Slot.WOUND, "ptr")}
-{_slot("centres", Slot.CENTRES, "ptr")}
+  call void @gather(ptr %table, i64 {FrameSlot.FOR_SPARSE}, i64 {FrameSlot.SPARSE})
+  call void @call(ptr %table, i64 {FrameSlot.SPARSE})
+{_slot("sparse.count", FrameSlot.SPARSE + 1)}
+{_slot("sparse.room", FrameSlot.SPARSE + 11, "ptr")}
+{_slot("sparse.stride", FrameSlot.SPARSE + 12)}
+{_slot("start", FrameSlot.START)}
+{_slot("initial", FrameSlot.AT_START, "ptr")}
+{_slot("wound", FrameSlot.WOUND, "ptr")}
+{_slot("centres", FrameSlot.CENTRES, "ptr")}
   br label %link
 link:
   %l = phi i64 [ 0, %sparse ], [ %l.next, %link.met ]
@@ -421,15 +421,15 @@ judged.nodes:
   %only = icmp eq i64 %task, {Task.JUDGE}
   br i1 %only, label %clear, label %samples
 samples:
-  call void @gather(ptr %table, i64 {Slot.FOR_SAMPLES}, i64 {Slot.SAMPLES})
-  call void @call(ptr %table, i64 {Slot.SAMPLES})
-{_slot("sample.count", Slot.SAMPLES + 1)}
-{_slot("residual", Slot.RESIDUAL, "ptr")}
+  call void @gather(ptr %table, i64 {FrameSlot.FOR_SAMPLES}, i64 {FrameSlot.SAMPLES})
+  call void @call(ptr %table, i64 {FrameSlot.SAMPLES})
+{_slot("sample.count", FrameSlot.SAMPLES + 1)}
+{_slot("residual", FrameSlot.RESIDUAL, "ptr")}
   %worst = call double @greatest(ptr %residual, i64 %sample.count)
   %closes = fcmp ole double %worst, {_number(0.5 * CLOSED)}
   br i1 %closes, label %closed, label %not.clear
 closed:
-{_slot("slack", Slot.SLACK, "ptr")}
+{_slot("slack", FrameSlot.SLACK, "ptr")}
   %no.slack = icmp eq ptr %slack, null
   br i1 %no.slack, label %clear, label %judge.slack
 judge.slack:
@@ -437,11 +437,11 @@ judge.slack:
   %enough = fcmp ogt double %least.slack, 0.0
   br i1 %enough, label %clear, label %not.clear
 clear:
-  ret i64 {Answer.CLEAR}
+  ret i64 {FrameAnswer.CLEAR}
 windings:
-  ret i64 {Answer.WINDINGS}
+  ret i64 {FrameAnswer.WINDINGS}
 not.clear:
-  ret i64 {Answer.NOT_CLEAR}
+  ret i64 {FrameAnswer.NOT_CLEAR}
 }}"""
 
 
@@ -455,9 +455,9 @@ move:
   ret i64 %answer
 turn:
   call void @turn(ptr %table)
-  ret i64 {Answer.CLEAR}
+  ret i64 {FrameAnswer.CLEAR}
 call:
   call void @call(ptr %table, i64 0)
-  ret i64 {Answer.CLEAR}
+  ret i64 {FrameAnswer.CLEAR}
 }}
 """

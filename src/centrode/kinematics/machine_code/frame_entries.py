@@ -22,7 +22,7 @@ from centrode.kinematics.machine_code.frame_kernels import (
     FreeNumbers,
     MeshLayout,
     PlaceScan,
-    Quantity,
+    RoomQuantity,
     frame_kernels,
     frame_places,
     rows_along,
@@ -140,7 +140,9 @@ def _plan(free: FreeMechanism, head: Record, records: Sequence[StreamerRecord]) 
     turned = {name: (int(k), str(function)) for name, (k, function) in head["turned"].items()}
     numbers = FreeNumbers(free.paths, {name: int(k) for name, k in head["copied"].items()}, turned, scale)
     mesh = MeshLayout(tuple(head["least"]), tuple(head["greatest"]), tuple(head["links"]))
-    quantities = tuple(Quantity(name, int(first), tuple(shape)) for name, first, shape in head["quantities"])
+    quantities = tuple(
+        RoomQuantity(name, int(first), tuple(shape)) for name, first, shape in head["quantities"]
+    )
     layout = FrameLayout(mesh, graph_of_rows(head["winders"]), quantities, tuple(head["angles"]))
     places = frame_places(free.ready, free.span).all
     scans = [_place_scan(record, at) for record, at in zip(records, places, strict=True)]

@@ -2,7 +2,7 @@
 
 Kernels of a batch have mechanisms in their lanes, and of one mechanism would fill a vector with copies. Here the lanes
 are the nodes of the mesh, then the samples; what is reduced over them is reduced by NumPy. What is judged, and what
-is written, are the same expressions as in a batch (`event_screening`, `outputs`).
+is written, are the same expressions as in a batch (`event_free_mechanisms`, `outputs`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,12 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import SLACK, EventScreening, mesh_places, sparse_nodes
+from centrode.kinematics.machine_code.event_free_mechanisms import (
+    SLACK,
+    EventScreening,
+    mesh_places,
+    sparse_nodes,
+)
 from centrode.kinematics.machine_code.trace import Traced
 from centrode.kinematics.machine_code.variables import (
     AWAY,
@@ -328,7 +333,7 @@ class MeshJudge:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class RoomQuantity:
     """Quantity of a motion: rows of a room, and what each sample has of it."""
 
     name: str
@@ -359,7 +364,7 @@ def quantities_of(solved: Solved) -> dict[str, Any]:
 
 def frame_outputs(
     traced: Traced, slack: Node | None
-) -> tuple[tuple[Quantity, ...], tuple[int, ...], list[Node]]:
+) -> tuple[tuple[RoomQuantity, ...], tuple[int, ...], list[Node]]:
     """Quantities with their rows, rows of the angles whose turns are found, and the node of every row."""
     nodes = {
         name: np.asarray(values, dtype=object)[0, 0] for name, values in quantities_of(traced.solved).items()
@@ -377,7 +382,7 @@ def frame_outputs(
     nodes[RESIDUAL] = np.asarray(traced.solved.residual, dtype=object)[0, 0]
     if slack is not None:
         nodes[SLACK_AT_SAMPLES] = box_array([slack])[0]
-    quantities: list[Quantity] = []
+    quantities: list[RoomQuantity] = []
     rows: list[Node] = []
     known: dict[tuple[Node, ...], int] = {}
     for label, values in nodes.items():
@@ -386,7 +391,7 @@ def frame_outputs(
         first = known.setdefault(flat, len(rows))
         if first == len(rows):
             rows += flat
-        quantities.append(Quantity(label, first, np.shape(values)))
+        quantities.append(RoomQuantity(label, first, np.shape(values)))
     angles = next(quantity for quantity in quantities if quantity.name == name)
     return tuple(quantities), tuple(angles.first + k for k in turning), rows
 
@@ -414,7 +419,7 @@ class FrameMemory:
         self.rows = {quantity.name: self.room[quantity.rows, 0] for quantity in kernels.quantities}
 
 
-def room_view(room: Array, quantity: Quantity) -> Array:
+def room_view(room: Array, quantity: RoomQuantity) -> Array:
     """A quantity as a view of its room that cannot be written to: (samples, ...)."""
     rows = room[quantity.rows, 0]
     view = np.moveaxis(rows.reshape(*quantity.shape, rows.shape[-1]), -1, 0)
@@ -435,7 +440,7 @@ class FrameKernels:
 
     judge: MeshJudge
     write: PlaceScan
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[RoomQuantity, ...]
     angles: tuple[int, ...]
     drives: Array
 
@@ -479,7 +484,7 @@ class FrameLayout:
 
     mesh: MeshLayout
     winders: Graph
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[RoomQuantity, ...]
     angles: tuple[int, ...]
 
 

@@ -10,7 +10,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.event_free_mechanisms import EventScreening
 from centrode.kinematics.machine_code.frame_calls import CalledFrames, CalledMemory
 from centrode.kinematics.machine_code.frame_kernels import (
     COSINES,
@@ -23,7 +23,7 @@ from centrode.kinematics.machine_code.frame_kernels import (
     FreeNumbers,
     Known,
     PlaceScan,
-    Quantity,
+    RoomQuantity,
     closes,
     frame_kernels,
     frame_outputs,
@@ -62,7 +62,7 @@ class FreeMechanism:
         """The numbers of one mechanism as a batch of one. Raises InputError for what no description can have."""
         return dimensions_of(self.ready.mechanism, self._arrays(given), ARRAYS)
 
-    def varied(self, given: Given) -> Varied:
+    def varied_numbers(self, given: Given) -> Varied:
         """The numbers that change as variables; `given` show which these are."""
         values = self._arrays(given)
         return varied_of(dimensions_of(self.ready.mechanism, values, ARRAYS), values)
@@ -87,14 +87,14 @@ class FramePlan(Protocol):
     def memory(self) -> Any:
         """Memory for one thread."""
 
-    def judged(self, given: Given, memory: Any) -> Known | None:
+    def judged_variables(self, given: Given, memory: Any) -> Known | None:
         """The variables of a mechanism that is clear; None of another."""
 
     def move(self, given: Given, memory: Any) -> bool:
         """Write the motion of a mechanism into the memory; False where it is not clear."""
 
     def samples_of(self, outputs: Mapping[str, Node]) -> SampleScan:
-        """Numbers at the samples, of what `judged` gives."""
+        """Numbers at the samples, of what `judged_variables` gives."""
 
 
 # Plans whose samples have nothing to do with one another.
@@ -111,18 +111,18 @@ class DirectPlan:
     executor: str
 
     @cached_property
-    def called(self) -> CalledFrames | None:
+    def called_frames(self) -> CalledFrames | None:
         """The calls of machine code; None where kernels are called one by one."""
         return CalledFrames.of(self.numbers, self.kernels) if self.executor == MACHINE_CODE else None
 
     def memory(self) -> FrameMemory:
-        return self.kernels.memory() if self.called is None else self.called.memory()
+        return self.kernels.memory() if self.called_frames is None else self.called_frames.memory()
 
-    def judged(self, given: Given, memory: FrameMemory) -> Known | None:
+    def judged_variables(self, given: Given, memory: FrameMemory) -> Known | None:
         known = dict(zip(self.free.paths, given, strict=True))
         if isinstance(memory, CalledMemory):
-            assert self.called is not None
-            judged = self.called.judged(given, memory)
+            assert self.called_frames is not None
+            judged = self.called_frames.judged_variables(given, memory)
             return None if judged is None else known | judged
         known |= self.numbers.known(given)
         further = self.kernels.judge.judge(known, memory)
@@ -130,8 +130,8 @@ class DirectPlan:
 
     def move(self, given: Given, memory: FrameMemory) -> bool:
         if isinstance(memory, CalledMemory):
-            assert self.called is not None
-            return self.called.move(given, memory)
+            assert self.called_frames is not None
+            return self.called_frames.move(given, memory)
         return self.kernels.move(self.numbers.known(given), memory)
 
     def samples_of(self, outputs: Mapping[str, Node]) -> SampleScan:
@@ -147,7 +147,7 @@ class DirectPlan:
 class WalkedMemory:
     """Memory of one thread."""
 
-    def __init__(self, quantities: Sequence[Quantity], count: int, samples: int) -> None:
+    def __init__(self, quantities: Sequence[RoomQuantity], count: int, samples: int) -> None:
         self.room = room_of(count, 1, samples)
         self.quantities = {
             quantity.name: room_view(self.room, quantity)
@@ -189,7 +189,7 @@ class WalkedPlan:
         return way_of(self.free.ready.kinematics.path, sample_places(self.free.ready, self.free.span))
 
     @cached_property
-    def _written(self) -> tuple[tuple[Quantity, ...], SampleScan, int]:
+    def _written(self) -> tuple[tuple[RoomQuantity, ...], SampleScan, int]:
         quantities, _angles, rows = frame_outputs(self.screening.traced, self.screening.slack_at_samples)
         return quantities, self.samples_of({str(k): node for k, node in enumerate(rows)}), len(rows)
 
@@ -197,7 +197,7 @@ class WalkedPlan:
         quantities, _samples, count = self._written
         return WalkedMemory(quantities, count, len(self.free.span.parameter))
 
-    def judged(self, given: Given, memory: WalkedMemory) -> Known | None:
+    def judged_variables(self, given: Given, memory: WalkedMemory) -> Known | None:
         numbers = self.free.dimensions(given)
         values = self.varied_numbers.values(numbers)
         values |= {path: np.array([x]) for path, x in zip(self.free.paths, given, strict=True)}
@@ -208,7 +208,7 @@ class WalkedPlan:
         return {name: float(x[0]) for name, x in (values | screened.values).items()}
 
     def move(self, given: Given, memory: WalkedMemory) -> bool:
-        known = self.judged(given, memory)
+        known = self.judged_variables(given, memory)
         if known is None or not self._written[1].fill(known, memory.room):
             return False
         rows = memory.rows

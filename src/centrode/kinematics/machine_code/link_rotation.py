@@ -36,7 +36,7 @@ from centrode.kinematics.machine_code.variables import (
 )
 from centrode.kinematics.samples import ORDERS
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.rounding import SAFETY, UNIT_ROUNDOFF
+from centrode.numerics.rounding_bounds import SAFETY, UNIT_ROUNDOFF
 from centrode.numerics.scans import Reduction
 from centrode.numerics.trigonometric_polynomials import (
     TrigonometricPolynomial,
@@ -62,7 +62,7 @@ MIDDLE, SENSE, INITIAL, SURE = "middle of", "sense of", "initial angle of", "sur
 
 
 @dataclass(frozen=True)
-class Heading:
+class LinkHeading:
     """A direction, and an angle to add: a link's angle stays within a quarter of a turn of the sum."""
 
     along: Vector
@@ -102,7 +102,7 @@ class LinkRotation:
         if path.by_time or traced.steps or path.driven[0].drive.kind != "angle":
             return cls(traced, {}, names)
         # the angle of what a crank carries along is told by its own cosine and sine
-        known = {link: Heading(traced.turning[link], 0.0) for link in links}
+        known = {link: LinkHeading(traced.turning[link], 0.0) for link in links}
         known |= {link: heading for link, heading in _headings(traced) if link in links}
         nodes = [as_node(x) for heading in known.values() for x in heading.along]
         polynomials = polynomials_of(nodes, PARAMETER)
@@ -175,7 +175,7 @@ def _swing(x: TrigonometricPolynomial, y: TrigonometricPolynomial) -> tuple[Oper
     return m.atan2(longest[1], longest[0]), sense, sure
 
 
-def _headings(traced: Traced) -> Iterator[tuple[str, Heading]]:
+def _headings(traced: Traced) -> Iterator[tuple[str, LinkHeading]]:
     """Links of dyads on known places, each with the direction that its angle keeps to one side of."""
     ready = traced.solved.ready
     signs = ready.assembled.signs
@@ -189,7 +189,7 @@ def _headings(traced: Traced) -> Iterator[tuple[str, Heading]]:
             yield from _of_aim(traced, group, float(signs[k]))
 
 
-def _of_meeting_in_plane(traced: Traced, group: Meet, sign: float) -> Iterator[tuple[str, Heading]]:
+def _of_meeting_in_plane(traced: Traced, group: Meet, sign: float) -> Iterator[tuple[str, LinkHeading]]:
     """RRR: the hinge lies to the left of the way from centre to centre for a positive sign; RRP: ahead of the foot."""
     numbers, at = traced.solved.ready.kinematics.numbers, traced.at
     one, other = group.loci
@@ -198,13 +198,13 @@ def _of_meeting_in_plane(traced: Traced, group: Meet, sign: float) -> Iterator[t
     if isinstance(other, Rod):
         for rod, far, side in ((one, other, sign), (other, one, -sign)):
             away = subtract_in_plane(at.points[far.centre], at.points[rod.centre])
-            yield rod.link, Heading(away, side * QUARTER - _inside(traced, rod))
+            yield rod.link, LinkHeading(away, side * QUARTER - _inside(traced, rod))
     elif isinstance(other, Rail):
         guide = rotate_vector(numbers.direction[other.guide], at.poses[other.on].rotor)
-        yield one.link, Heading(guide, (0.0 if sign > 0.0 else math.pi) - _inside(traced, one))
+        yield one.link, LinkHeading(guide, (0.0 if sign > 0.0 else math.pi) - _inside(traced, one))
 
 
-def _of_meeting_on_sphere(traced: Traced, group: Meet, sign: float) -> Iterator[tuple[str, Heading]]:
+def _of_meeting_on_sphere(traced: Traced, group: Meet, sign: float) -> Iterator[tuple[str, LinkHeading]]:
     """RRR on the sphere: as in the plane, angles being measured at a link's first point from its reference arc."""
     numbers, at = traced.solved.ready.kinematics.numbers, traced.at
     one, other = group.loci
@@ -217,19 +217,19 @@ def _of_meeting_on_sphere(traced: Traced, group: Meet, sign: float) -> Iterator[
         pivot, (end,) = at.points[rod.centre], numbers.ends[rod.link]
         zero = tangent(pivot, at.points[end])
         way = subtract(at.points[far.centre], pivot)
-        yield rod.link, Heading(components(way, zero, pivot), side * QUARTER)
+        yield rod.link, LinkHeading(components(way, zero, pivot), side * QUARTER)
 
 
-def _of_aim(traced: Traced, group: Aim, sign: float) -> Iterator[tuple[str, Heading]]:
+def _of_aim(traced: Traced, group: Aim, sign: float) -> Iterator[tuple[str, LinkHeading]]:
     """RPR: for a positive sign the target lies ahead of the foot of the pivot on the guide."""
     numbers, at = traced.solved.ready.kinematics.numbers, traced.at
     away = subtract_in_plane(at.points[group.target], at.points[group.pivot])
     x, y = aim_curve(group, numbers)[1]
     further = (0.0 if sign > 0.0 else math.pi) - _direction(x, y)
-    yield group.link, Heading(away, further)
+    yield group.link, LinkHeading(away, further)
     if group.block is not None:
         x, y = numbers.turn[group.guide]
-        yield group.block, Heading(away, further + _direction(x, y))
+        yield group.block, LinkHeading(away, further + _direction(x, y))
 
 
 def _inside(traced: Traced, rod: Rod) -> Operand:

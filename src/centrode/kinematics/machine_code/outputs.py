@@ -84,7 +84,7 @@ class Writer:
         return Graph({str(k): node for k, node in enumerate(self.flat)})
 
     @cached_property
-    def fixed(self) -> dict[int, float]:
+    def fixed_places(self) -> dict[int, float]:
         """Place among all numbers -> what stands there everywhere, and is not written."""
         nodes = enumerate(self.flat if self.sparing else ())
         return {k: float(node.detail) for k, node in nodes if node.operation == CONSTANT}
@@ -92,12 +92,12 @@ class Writer:
     @cached_property
     def scan(self) -> Scan:
         """Lanes are places, steps are mechanisms."""
-        written = [k for k in range(len(self.flat)) if k not in self.fixed]
+        written = [k for k in range(len(self.flat)) if k not in self.fixed_places]
         outputs = {str(k): self.flat[k] for k in written}
         used = Graph({**outputs, **{name: x.value for name, x in self.judged.items()}}).variables
         along = tuple(name for name in self.places if name in used or name == PARAMETER)
         of_mechanisms = tuple(name for name in used if name not in along)
-        places = tuple(written) if self.fixed else ()
+        places = tuple(written) if self.fixed_places else ()
         return Scan(along, of_mechanisms, outputs, extremes=self.judged, places=places)
 
     @cached_property
@@ -129,7 +129,7 @@ class Writer:
         numbers = math.prod(shape)
         whole, blank = fresh_room(numbers) if out is None else (out.reshape(-1)[:numbers], False)
         room = whole.reshape(shape)
-        for place, number in self.fixed.items():
+        for place, number in self.fixed_places.items():
             if not (blank and is_blank(number)):
                 room[place] = number
         return room

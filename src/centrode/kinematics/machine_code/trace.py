@@ -55,7 +55,7 @@ from centrode.locale import mark
 from centrode.numerics.bends import Bent
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.jets import Jet
-from centrode.structure.constraints import Contact, Positions, contact_point
+from centrode.structure.constraints import Positions, TrackContact, contact_point
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 
@@ -364,7 +364,7 @@ def motion_of_parts(parts: MotionParts, span: SampleGrid, varied: Varied) -> Sol
     points = parts.columns[:, : layout.first_attitude]
     columns = parts.columns.reshape(ORDERS, layout.width, 1, 1)
     worst = _worst(kinematics, at, varied.scale)
-    wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
+    wheels = [c for c in kinematics.structure.constraints if isinstance(c, TrackContact)]
     contacts = [x for c in wheels for x in contact_point(c, EXPRESSIONS, kinematics.numbers, at)]
     start = parts.ready.assembled
     path = kinematics.path

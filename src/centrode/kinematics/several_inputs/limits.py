@@ -16,7 +16,7 @@ from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import MAX_TURNS, DrivenBy, Path, TimeScale, unit_of
-from centrode.kinematics.plan_evaluation import Event, branches_at_start, layout_of
+from centrode.kinematics.plan_evaluation import RadicandZero, branches_at_start, layout_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import ORDERS, Samples, evaluate_columns
 from centrode.kinematics.solve import SEARCH, TURNS
@@ -26,7 +26,7 @@ from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.reading import nearest
 from centrode.numerics.arrays import ARRAYS
-from centrode.printing import PrintsSummary
+from centrode.printed_results import PrintsSummary
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 
@@ -342,7 +342,7 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
     return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), limits)
 
 
-def _groups(prepared: Ready, events: list[Event], value: float) -> str:
+def _groups(prepared: Ready, events: list[RadicandZero], value: float) -> str:
     """Names of the groups that lock at a value."""
     # several groups may lock at one value: to the last bit the same event
     which = dict.fromkeys(event.group for event in events if event.kind == "limit" and event.at == value)

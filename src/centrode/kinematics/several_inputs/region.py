@@ -18,7 +18,7 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.motion import labels_of, motion
 from centrode.kinematics.path import JETS, unit_of
-from centrode.kinematics.plan_evaluation import Event, PlanLayout, branches_at_start, layout_of
+from centrode.kinematics.plan_evaluation import PlanLayout, RadicandZero, branches_at_start, layout_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns
 from centrode.kinematics.several_inputs.limits import (
@@ -131,7 +131,7 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
 
 
 def _limits(
-    events: list[Event], nodes: Array, first: int
+    events: list[RadicandZero], nodes: Array, first: int
 ) -> tuple[npt.NDArray[np.intp], Array, npt.NDArray[np.intp]]:
     limits = [e for e in events if e.kind == "limit" and nodes[0] <= e.at <= nodes[-1]]
     return (

@@ -80,7 +80,7 @@ class Integration:
         -------
         The state after these attempts; with `rows` no more than that many steps are taken.
         """
-        count, lanes = len(self.problem.carried) + HEADER, state.shape[1]
+        count, lanes = len(self.problem.carried_names) + HEADER, state.shape[1]
         if state.shape[0] != count or len(parameters) != len(self.problem.parameters):
             raise ValueError(
                 f"expected {len(self.problem.parameters)} parameters and {count} rows of a state"
@@ -139,7 +139,7 @@ def integration_of(
         if key in _remembered:
             _remembered.move_to_end(key)
             return _remembered[key]
-    text = _Writer(problem, lanes, machine.width(64), machine.has_fma).text()
+    text = _IntegrationWriter(problem, lanes, machine.width(64), machine.has_fma).text()
     made = Integration(problem, lanes, compiled_function(text, machine))
     with _one_at_a_time:
         _remembered[key] = made
@@ -148,7 +148,7 @@ def integration_of(
     return made
 
 
-class _Writer:
+class _IntegrationWriter:
     def __init__(self, problem: InitialValueProblem, width: int, chunk: int, has_fma: bool) -> None:
         self.problem, self.width, self.block = problem, width, Block()
         self.code = Code(self.block, Vector("double", width), has_fma)
@@ -202,7 +202,7 @@ class _Writer:
     def _entry(self, table: str, index: Value) -> Value:
         return self.block.put(f"load double, ptr {self._at(f'@{table}', index)}, align 8")
 
-    def _widened(self, value: Value) -> Value:
+    def _widened_value(self, value: Value) -> Value:
         """A number of the lanes as the sums take it."""
         if not self.single:
             return value
@@ -235,7 +235,7 @@ class _Writer:
         for name in ("now", "stage", "fifth", "third"):
             self._room(name, self.length)
         self._room("rates", STAGES * self.length)
-        self._room("fixed", max(1, len(problem.fixed) * width))
+        self._room("fixed", max(1, len(problem.fixed_names) * width))
         self._room("time", width)
         self._room("size", width)
         for name in ("now", "rates"):
@@ -267,7 +267,7 @@ class _Writer:
         self._store(self._load(self._row("state", 0, lane)), "%time")
         self._store(self._load(self._row("state", 1, lane)), "%size")
         followed = len(problem.unknowns)
-        for k in range(len(problem.carried)):
+        for k in range(len(problem.carried_names)):
             value = self._load(self._row("state", HEADER + k, lane))
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
             self._store(value, self._at(array, place * width))
@@ -277,7 +277,7 @@ class _Writer:
         for k, count in ((2, attempts), (3, rows)):
             number = block.put(f"sitofp i64 {count} to double")
             self._store(self._splat(number, self.code.vector), self._row("new_state", k, lane))
-        for k in range(len(problem.carried)):
+        for k in range(len(problem.carried_names)):
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
             self._store(self._load(self._at(array, place * width)), self._row("new_state", HEADER + k, lane))
 
@@ -293,7 +293,7 @@ class _Writer:
         time, size = self._load("%time"), self._load("%size")
         left = code.subtract(self.known[variable(END)], time)
         if problem.limit:
-            limit = self._load(self._fixed(problem.limit))
+            limit = self._load(self._fixed_value(problem.limit))
             size = code.select(code.compare("olt", limit, size), limit, size)
         cut = code.compare("olt", left, size)
         step = code.select(cut, left, size)
@@ -303,7 +303,7 @@ class _Writer:
             code.compare("ogt", size, self.known[variable(SMALLEST)]),
         )
         if problem.guard:
-            free = code.compare("oeq", self._load(self._fixed(problem.guard)), code.constant(0.0))
+            free = code.compare("oeq", self._load(self._fixed_value(problem.guard)), code.constant(0.0))
             under_way = code.logical("and", under_way, free)
         # a lane that waits takes steps of no length
         step = code.select(under_way, step, code.constant(0.0))
@@ -350,7 +350,7 @@ class _Writer:
 
     def _stages(self, time: Value, step: Value) -> None:
         """Rates of all stages, then the values behind the step and the estimates of its error."""
-        wide = self._widened(step)
+        wide = self._widened_value(step)
         with self._loop("stages", STAGES) as stage:
             self._sum_of_stage(stage, wide)
             share = self._splat(self._entry("c", stage), self.code.vector)
@@ -364,7 +364,7 @@ class _Writer:
         with self._chunks() as place:
             rates = self._used_rates(place, FIFTH, THIRD)
             for weights, array in ((FIFTH, "%fifth"), (THIRD, "%third")):
-                self._store(self._weighted(weights, rates), self._at(array, place), self.wide)
+                self._store(self._weighted_sum(weights, rates), self._at(array, place), self.wide)
 
     def _sum_of_stage(self, stage: Value, step: Value) -> None:
         """Values at which a stage has its rates: code of its own for each, without weights that are zero."""
@@ -386,7 +386,7 @@ class _Writer:
             total = self._load(self._at("%now", place), wide)
             rates = self._used_rates(place, weights)
             if rates:
-                total = wide.multiply_add(step, self._weighted(weights, rates), total)
+                total = wide.multiply_add(step, self._weighted_sum(weights, rates), total)
             self._store(total, self._at("%stage", place), wide)
 
     @contextmanager
@@ -405,7 +405,7 @@ class _Writer:
                 found[stage] = self._load(at, self.wide)
         return found
 
-    def _weighted(self, weights: Sequence[float], rates: Mapping[int, Value]) -> Value:
+    def _weighted_sum(self, weights: Sequence[float], rates: Mapping[int, Value]) -> Value:
         """The sum over stages of weights times rates."""
         wide = self.wide
         total: Value | None = None
@@ -435,8 +435,8 @@ class _Writer:
         condition = self.code.compare("ogt", taken, self.code.constant(0.5))
         return condition, operating.value(graph.outputs[SIZE])
 
-    def _fixed(self, name: str) -> Value:
-        return self._at("%fixed", self.problem.fixed.index(name) * self.width)
+    def _fixed_value(self, name: str) -> Value:
+        return self._at("%fixed", self.problem.fixed_names.index(name) * self.width)
 
     def _close(self, time: Value, step: Value, taken: Value) -> None:
         """What the step ends with, in the lanes that took it."""
@@ -446,7 +446,7 @@ class _Writer:
         for node in graph.order:
             if node not in operating.values:
                 operating.compute(node)
-        for k, name in enumerate(self.problem.carried):
+        for k, name in enumerate(self.problem.carried_names):
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
             at = self._at(array, place * self.width)
             value = operating.value(graph.outputs[name])
@@ -465,7 +465,7 @@ class _Writer:
         row = self._at("%outputs", first)
         self._store(time, row)
         followed = len(self.problem.unknowns)
-        for k in range(len(self.problem.carried)):
+        for k in range(len(self.problem.carried_names)):
             array, place = ("%now", k) if k < followed else ("%fixed", k - followed)
             self._store(self._load(self._at(array, place)), self._at(row, k + 1))
         total = block.put(f"add i64 {written}, 1")
@@ -480,7 +480,7 @@ class _Writer:
             variable(name): self._load(self._at(array, k * self.width))
             for k, name in enumerate(self.problem.unknowns)
         }
-        for k, name in enumerate(self.problem.fixed):
+        for k, name in enumerate(self.problem.fixed_names):
             values[variable(name)] = self._load(self._at("%fixed", k * self.width))
         return values
 

@@ -86,12 +86,12 @@ class Kernel:
         call = call_of(self.scan, parameters, inputs, state, out, steps, self.number)
         if not call.lanes or not call.steps:
             extremes = np.empty((len(self.scan.extremes), call.steps))
-            return Scanned(call.outputs, _copied(call.state, new_state), extremes)
+            return Scanned(call.outputs, _copied_state(call.state, new_state), extremes)
         width = self.shape.vector.width
         # a kernel reads and writes whole vectors: fewer lanes are filled up outside the caller's arrays
         if call.lanes < width:
             scanned = _without_padding(self._run(_pad_lanes(call, width), 1), call, self.scan.rows)
-            return Scanned(scanned.outputs, _copied(scanned.state, new_state), scanned.extremes)
+            return Scanned(scanned.outputs, _copied_state(scanned.state, new_state), scanned.extremes)
         return self._run(call, threads, new_state)
 
     def _run(self, call: Call, threads: int, new_state: Array | None = None) -> Scanned:
@@ -304,7 +304,7 @@ def _pad_lanes(call: Call, width: int) -> Call:
     return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
 
 
-def _copied(state: Array, new_state: Array | None) -> Array:
+def _copied_state(state: Array, new_state: Array | None) -> Array:
     """A state of its own, that of the caller where there is one."""
     if new_state is None:
         return state.copy()

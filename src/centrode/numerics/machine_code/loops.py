@@ -247,10 +247,10 @@ class LoopShape:
 
 def function_text(scan: Scan, shape: LoopShape) -> str:
     """The scan as a module in LLVM's language, with the function `FUNCTION`."""
-    return _Writer(scan, shape).text()
+    return _LoopWriter(scan, shape).text()
 
 
-class _Writer:
+class _LoopWriter:
     def __init__(self, scan: Scan, shape: LoopShape) -> None:
         self.scan, self.shape, self.block = scan, shape, Block()
         self.code = Code(self.block, shape.vector, shape.has_fma)

@@ -36,12 +36,12 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
-    LinearEquations,
     Listing,
     Paragraph,
     Reference,
     Section,
     Sheet,
+    SheetEquations,
     SymbolList,
     Table,
 )
@@ -189,7 +189,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return blocks.ItemsBlock(tuple(map(spelling.text, texts)), numbered)
         case Listing(heading, items):
             return blocks.ParagraphBlock(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
-        case LinearEquations(matrix, unknowns, right):
+        case SheetEquations(matrix, unknowns, right):
             rows = tuple(tuple(map(spelling.mathematics, row)) for row in matrix)
             left, right_side = (tuple(map(spelling.mathematics, side)) for side in (unknowns, right))
             return blocks.SystemBlock(rows, left, right_side)

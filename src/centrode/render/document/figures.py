@@ -96,7 +96,7 @@ def svg_of(figure: Figure, box: Bbox | None = None) -> bytes:
             text.set_path_effects(effect)
             text.set_gid(name)
     svg = _EDGED.sub(lambda found: _LETTERS.sub(_with_edge, found[0]), stream.getvalue())
-    return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded, found[0]), svg)
+    return _PLACES.sub(lambda found: _DECIMALS.sub(_rounded_number, found[0]), svg)
 
 
 @contextmanager
@@ -136,7 +136,7 @@ def _with_edge(found: re.Match[bytes]) -> bytes:
     return b"".join(_DEFINITIONS.findall(found[2])) + behind + _DEFINITIONS.sub(b"", found[0])
 
 
-def _rounded(found: re.Match[bytes]) -> bytes:
+def _rounded_number(found: re.Match[bytes]) -> bytes:
     return f"{float(found[0]):.2f}".rstrip("0").rstrip(".").encode()
 
 

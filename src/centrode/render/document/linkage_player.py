@@ -52,7 +52,7 @@ def rings_of(globe: Globe, samples: Samples) -> tuple[RingBlock, ...]:
             pole = globe.mechanism.points_of(guide.on)[pole]
         local: Array = np.array(unit_vector(pole))  # type: ignore[arg-type]
         at = samples[:1] if guide.on == "frame" else samples
-        poles = [globe.carried(guide.on, local, int(sample)) for sample in at]
+        poles = [globe.carried_places(guide.on, local, int(sample)) for sample in at]
         colour = GROUND if guide.on == "frame" else colours[guide.on].colour
         kept = np.array([np.full(3, np.nan) if one is None else one for one in poles])
         found.append(RingBlock(kept, float(guide.arc), colour))
@@ -70,7 +70,7 @@ def _poses(
     """Where axes in a link's own axes are (samples, 3); nothing if the link has no position."""
     if link == "frame":
         return np.array([[*scene.factor * np.asarray(local, dtype=float), 0.0]])
-    place = scene.carried(link, local, slice(None))
+    place = scene.carried_places(link, local, slice(None))
     if place is None:
         return None
     return np.column_stack([place, scene.turns[link]])[samples]

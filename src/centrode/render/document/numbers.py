@@ -51,7 +51,7 @@ class Numbers:
             return '"' + self.plain(value) + '"'
         return decimal(f"{value or 0.0:.{digits or self.digits}g}")
 
-    def measured(self, value: float, unit: str, digits: int | None = None) -> str:
+    def with_unit(self, value: float, unit: str, digits: int | None = None) -> str:
         """A quantity in SI as text, with its unit."""
         factor, label = self.shown(unit)
         return with_unit(self.plain(value * factor, digits), label, NARROW)

@@ -86,7 +86,7 @@ class DocumentSpelling(Spelling):
         index = symbol.index if symbol.slanted else f"upright({quote(symbol.index)})"
         return f"${symbol.letter}_({index})$" if symbol.index else f"${symbol.letter}$"
 
-    def indexed(self, symbol: Indexed) -> str:
+    def with_index(self, symbol: Indexed) -> str:
         """A letter with its index, as mathematics."""
         return f"${symbol.letter}_({quote(symbol.index)})$"
 

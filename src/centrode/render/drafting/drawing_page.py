@@ -48,14 +48,14 @@ def points_of(height: float) -> float:
 
 
 @dataclass(frozen=True)
-class Field:
+class SheetField:
     """A rectangle of a sheet [mm]."""
 
     corner: Array
     size: Array
 
     @classmethod
-    def between(cls, left: float, bottom: float, right: float, top: float) -> Field:
+    def between(cls, left: float, bottom: float, right: float, top: float) -> SheetField:
         """The field between its sides."""
         return cls(np.array([left, bottom]), np.array([right - left, top - bottom]))
 
@@ -69,14 +69,16 @@ class Field:
         """Both corners."""
         return np.array([self.corner, self.end])
 
-    def part(self, left: float = 0.0, bottom: float = 0.0, right: float = 0.0, top: float = 0.0) -> Field:
+    def part(
+        self, left: float = 0.0, bottom: float = 0.0, right: float = 0.0, top: float = 0.0
+    ) -> SheetField:
         """The field without strips at its sides."""
-        return Field(self.corner + np.array([left, bottom]), self.size - [left + right, bottom + top])
+        return SheetField(self.corner + np.array([left, bottom]), self.size - [left + right, bottom + top])
 
-    def share(self, across: int, column: int, up: int = 1, row: int = 0) -> Field:
+    def share(self, across: int, column: int, up: int = 1, row: int = 0) -> SheetField:
         """One of equal cells, counted from the left and from below."""
         cell = self.size / [across, up]
-        return Field(self.corner + cell * [column, row], cell)
+        return SheetField(self.corner + cell * [column, row], cell)
 
 
 @dataclass
@@ -124,13 +126,19 @@ class DrawingPage(Page):
             drawn.set_gid(layer)
 
     def fit(
-        self, field: Field, text: str, heights: Iterable[float], layer: str, left: bool = False, **how: Any
+        self,
+        field: SheetField,
+        text: str,
+        heights: Iterable[float],
+        layer: str,
+        left: bool = False,
+        **how: Any,
     ) -> None:
         """A text in a field, in the greatest of some heights at which it goes into it, wrapped where it must be."""
         height = self.largest_height(field, [text], heights)
         self._write_in_field(field, text, height, layer, left, **how)
 
-    def largest_height(self, field: Field, texts: Iterable[str], heights: Iterable[float]) -> float:
+    def largest_height(self, field: SheetField, texts: Iterable[str], heights: Iterable[float]) -> float:
         """The greatest of some heights at which each of some texts goes into a field; the last where none does."""
         *_others, height = heights = list(heights)
         for text in texts:
@@ -144,10 +152,10 @@ class DrawingPage(Page):
         return height
 
     def _write_in_field(
-        self, field: Field, text: str, height: float, layer: str, left: bool = False, **how: Any
+        self, field: SheetField, text: str, height: float, layer: str, left: bool = False, **how: Any
     ) -> Text:
         """A text in the middle of a field, or from its left side on."""
-        shown = "\n".join(wrapped(text, float(field.size[0]) - 1.6, height))
+        shown = "\n".join(wrapped_lines(text, float(field.size[0]) - 1.6, height))
         x = field.corner[0] + (1.0 if left else field.size[0] / 2)
         y = field.corner[1] + field.size[1] / 2
         return self.overlay.text(
@@ -161,7 +169,7 @@ def letters_width(text: str, height: float) -> float:
     return (len(text) + 1) * LETTER * height
 
 
-def wrapped(text: str, room: float, height: float) -> list[str]:
+def wrapped_lines(text: str, room: float, height: float) -> list[str]:
     """Lines of a text for a width [mm]; what is one line stays one."""
     letters = max(4, int(room / (LETTER * height)))
     return [part for line in text.split("\n") for part in textwrap.wrap(line, letters) or [""]]
@@ -228,10 +236,10 @@ PRIMES = {r"{}^{\prime}": "′", r"^{\prime}": "′", "'''": "‴", "''": "″",
 
 def with_primes(text: str) -> str:
     """A text whose primes in formulas are letters of the font: those of mathematics come from one without names."""
-    return MATHEMATICS.sub(lambda found: _primed(found[0]), text)
+    return MATHEMATICS.sub(lambda found: _primed_formula(found[0]), text)
 
 
-def _primed(formula: str) -> str:
+def _primed_formula(formula: str) -> str:
     for written, prime in PRIMES.items():
         formula = formula.replace(written, prime)
     return formula

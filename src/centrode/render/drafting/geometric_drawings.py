@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patches import Circle
 
-from centrode.render.drafting.drawing_page import USUAL, DrawingPage, Field, letters_width, wrapped
+from centrode.render.drafting.drawing_page import USUAL, DrawingPage, SheetField, letters_width, wrapped_lines
 from centrode.render.drafting.plates import (
     METRE,
     SIGN,
@@ -61,7 +61,7 @@ WALL = 1.3
 
 def draw_geometric_plate(
     page: DrawingPage,
-    field: Field,
+    field: SheetField,
     drawing: GeometricDrawing,
     spelling: FigureSpelling,
     wanted: DrawingScale | None = None,
@@ -173,7 +173,7 @@ def _draw_angle(
     page.name(places[len(places) // 2], spelling.text(angle.text), clear=1.0)
 
 
-def write_facts(page: DrawingPage, field: Field, lines: list[tuple[str, str]]) -> None:
+def write_facts(page: DrawingPage, field: SheetField, lines: list[tuple[str, str]]) -> None:
     """What is given and found, one below the other from the top of a field, the values in a column of their own."""
     rows = [
         ("" if number else label, part)
@@ -190,6 +190,6 @@ def write_facts(page: DrawingPage, field: Field, lines: list[tuple[str, str]]) -
 
 def _value_lines(label: str, value: str, width: float) -> list[str]:
     """A value beside its label; where it does not fit there, below it, or else in as many lines as it needs."""
-    beside = wrapped(value, width - letters_width(label, USUAL), USUAL)
-    whole = wrapped(value, width, USUAL)
+    beside = wrapped_lines(value, width - letters_width(label, USUAL), USUAL)
+    whole = wrapped_lines(value, width, USUAL)
     return ["", *whole] if len(beside) > 1 and len(whole) == 1 else beside

@@ -12,7 +12,7 @@ import xarray
 from centrode.errors import InputError
 from centrode.locale import _, decimal_mark
 from centrode.quantities import spelled_unit
-from centrode.render.drafting.drawing_page import HEADING, SIGNS, USUAL, DrawingPage, Field
+from centrode.render.drafting.drawing_page import HEADING, SIGNS, USUAL, DrawingPage, SheetField
 from centrode.render.drafting.scales import DrawingScale, diagram_scale, largest_standard_scale
 from centrode.render.drawing.style import Pen, pens
 from centrode.render.drawing.texts import plain
@@ -89,7 +89,7 @@ def fitting_scale(ratios: Array, wanted: DrawingScale | None) -> DrawingScale:
     return wanted or largest
 
 
-def write_caption(page: DrawingPage, field: Field, title: str, scales: Sequence[str]) -> None:
+def write_caption(page: DrawingPage, field: SheetField, title: str, scales: Sequence[str]) -> None:
     """Title and scales in the middle below a drawing."""
     middle = float(field.corner[0] + field.size[0] / 2)
     up = float(field.corner[1])
@@ -97,7 +97,7 @@ def write_caption(page: DrawingPage, field: Field, title: str, scales: Sequence[
     page.write_in(USUAL, middle, up + 1.5, ";   ".join(scales), ha="center", va="bottom")
 
 
-def begin(page: DrawingPage, field: Field) -> Field:
+def begin(page: DrawingPage, field: SheetField) -> SheetField:
     """Forget lines and names of other drawings; the part of a field above its caption."""
     page.segments.clear()
     page.forget_texts()
@@ -108,7 +108,7 @@ def begin(page: DrawingPage, field: Field) -> Field:
 
 
 def draw_positions_plate(
-    page: DrawingPage, field: Field, sheet: PositionsPage, wanted: DrawingScale | None
+    page: DrawingPage, field: SheetField, sheet: PositionsPage, wanted: DrawingScale | None
 ) -> DrawingScale:
     """Numbered positions with the paths of the points; returns the scale.
 
@@ -143,7 +143,7 @@ def draw_positions_plate(
 # Plans of velocities and accelerations
 
 
-def draw_plan_plate(page: DrawingPage, field: Field, sheet: VectorDiagramPage) -> float:
+def draw_plan_plate(page: DrawingPage, field: SheetField, sheet: VectorDiagramPage) -> float:
     """A plan of velocities or accelerations; returns what a millimetre of it stands for, in SI."""
     inner = begin(page, field)
     places = flat(sheet.corners)
@@ -170,7 +170,7 @@ def polygon_extents(polygon: DrawnPolygon) -> Array:
     return np.asarray(np.ptp(flat([0j, *ends]), axis=0))
 
 
-def draw_group_plate(page: DrawingPage, field: Field, sheet: GroupPage) -> tuple[float, float]:
+def draw_group_plate(page: DrawingPage, field: SheetField, sheet: GroupPage) -> tuple[float, float]:
     """A group with the forces on it, beside it its polygon; returns the scales of lengths and forces, in SI."""
     inner = begin(page, field)
     mechanism = sheet.mechanism
@@ -193,7 +193,7 @@ def draw_group_plate(page: DrawingPage, field: Field, sheet: GroupPage) -> tuple
     return per, force
 
 
-def draw_lever_plate(page: DrawingPage, field: Field, sheet: LeverPage) -> float:
+def draw_lever_plate(page: DrawingPage, field: SheetField, sheet: LeverPage) -> float:
     """Zhukovsky's lever with all forces; returns what a millimetre stands for [m/rad, or a plain number]."""
     inner = begin(page, field)
     places = flat(sheet.corners)
@@ -211,7 +211,7 @@ def draw_lever_plate(page: DrawingPage, field: Field, sheet: LeverPage) -> float
 
 
 def _draw_polygons(
-    page: DrawingPage, field: Field, polygons: Sequence[DrawnPolygon], colours: Mapping[str, Pen]
+    page: DrawingPage, field: SheetField, polygons: Sequence[DrawnPolygon], colours: Mapping[str, Pen]
 ) -> float:
     """Polygons side by side, to one scale [N/mm]."""
     across = int(np.ceil(np.sqrt(len(polygons))))

@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import spelled_unit
-from centrode.render.drafting.drawing_page import SMALLEST, USUAL, DrawingPage, Field
+from centrode.render.drafting.drawing_page import SMALLEST, USUAL, DrawingPage, SheetField
 from centrode.render.drafting.plates import begin, number_text, scale_text, write_caption
 from centrode.render.drafting.recorder import MAIN, THIN
 from centrode.render.drafting.scales import diagram_scale
@@ -44,7 +44,7 @@ BEYOND = 7.0
 
 
 @dataclass(frozen=True)
-class Axes:
+class DiagramAxes:
     """Where a diagram lies: its origin [mm], what a millimetre stands for, and the ends of its axes [mm].
 
     A diagram that is `turned` has its first axis downwards, and its second to the right.
@@ -70,15 +70,15 @@ def span_of(curves: tuple[ScaledCurve, ...], axis: str) -> tuple[float, float]:
 
 
 def lay_axes(
-    field: Field, across: tuple[float, float], up: tuple[float, float], per: tuple[float, float]
-) -> Axes:
+    field: SheetField, across: tuple[float, float], up: tuple[float, float], per: tuple[float, float]
+) -> DiagramAxes:
     """Axes whose spans stand in the middle of a field."""
     spans = np.array([across, up]).T / per
     slack = field.size - (spans[1] - spans[0])
-    return Axes(np.asarray(field.corner - spans[0] + slack / 2), per)
+    return DiagramAxes(np.asarray(field.corner - spans[0] + slack / 2), per)
 
 
-def draw_diagram(page: DrawingPage, field: Field, diagram: ScaledDiagram) -> tuple[float, float]:
+def draw_diagram(page: DrawingPage, field: SheetField, diagram: ScaledDiagram) -> tuple[float, float]:
     """Curves in their field with axes and scales; returns what a millimetre stands for along both axes."""
     inner = begin(page, field).part(LEFT, LOW, RIGHT, TOP)
     across, up = span_of(diagram.curves, "across"), span_of(diagram.curves, "up")
@@ -92,8 +92,8 @@ def draw_diagram(page: DrawingPage, field: Field, diagram: ScaledDiagram) -> tup
 
 def _draw_one(
     page: DrawingPage,
-    field: Field,
-    axes: Axes,
+    field: SheetField,
+    axes: DiagramAxes,
     diagram: ScaledDiagram,
     across: tuple[float, float],
     up: tuple[float, float],
@@ -108,7 +108,7 @@ def _draw_one(
     write_caption(page, field, FigureSpelling(None).text(diagram.title), scales)
 
 
-def begin_box(field: Field) -> Array:
+def begin_box(field: SheetField) -> Array:
     """The box in which names of a diagram may stand."""
     return field.part(bottom=14.0).box
 
@@ -126,7 +126,7 @@ def symbol_text(label: AxisLabel) -> str:
 
 def draw_axis(
     page: DrawingPage,
-    axes: Axes,
+    axes: DiagramAxes,
     label: AxisLabel,
     which: int,
     span: tuple[float, float],
@@ -227,7 +227,7 @@ def _round_places(span: tuple[float, float], per: float) -> tuple[float, ...]:
     return tuple(float(f"{number * step:.12g}") for number in range(first, last + 1))
 
 
-def draw_curves(page: DrawingPage, axes: Axes, curves: tuple[ScaledCurve, ...]) -> None:
+def draw_curves(page: DrawingPage, axes: DiagramAxes, curves: tuple[ScaledCurve, ...]) -> None:
     """Curves as main lines, with their names where they are farthest from the axis."""
     spelling = FigureSpelling(None)
     lines = [axes.mm(curve.across, curve.up) for curve in curves]
@@ -249,10 +249,10 @@ def draw_curves(page: DrawingPage, axes: Axes, curves: tuple[ScaledCurve, ...]) 
 class EnergyMassFields:
     """Where the parts of the energy-mass diagram go: works and masses side by side at one height."""
 
-    work: Field
-    masses: Field
-    inertia: Field
-    text: Field
+    work: SheetField
+    masses: SheetField
+    inertia: SheetField
+    text: SheetField
 
 
 def draw_energy_mass(
@@ -282,7 +282,7 @@ def draw_energy_mass(
     _draw_one(page, fields.masses, masses, diagram.energy_mass, inertia, work)
     begin(page, fields.inertia)
     origin = np.array([masses.origin[0], inner[2].end[1] - (inner[2].size[1] - turn[1] / per_turn[1]) / 2])
-    turned = Axes(origin, (per_turn[1], per_inertia), turned=True)
+    turned = DiagramAxes(origin, (per_turn[1], per_inertia), turned=True)
     _draw_one(page, fields.inertia, turned, diagram.inertia, turn, inertia)
     _write_tangents(page, fields.text, diagram, per_work, per_inertia)
     return per_work, per_inertia
@@ -292,7 +292,7 @@ ENDS = "k", "l"
 """Names of the places where the tangents cut the axis of works."""
 
 
-def _draw_tangents(page: DrawingPage, axes: Axes, diagram: EnergyMassDiagram, reach: float) -> None:
+def _draw_tangents(page: DrawingPage, axes: DiagramAxes, diagram: EnergyMassDiagram, reach: float) -> None:
     """Both tangents from the axis of works to the end of the diagram, and the segment between them."""
     for name, slope, start in zip(("min", "max"), diagram.slopes, diagram.intercepts, strict=False):
         ends = axes.mm(np.array([0.0, reach]), np.array([start, start + slope * reach]))
@@ -309,7 +309,7 @@ def _draw_tangents(page: DrawingPage, axes: Axes, diagram: EnergyMassDiagram, re
 
 
 def _write_tangents(
-    page: DrawingPage, field: Field, diagram: EnergyMassDiagram, per_work: float, per_inertia: float
+    page: DrawingPage, field: SheetField, diagram: EnergyMassDiagram, per_work: float, per_inertia: float
 ) -> None:
     """How the flywheel follows from the tangents, in letters and numbers of the drawing."""
     if diagram.needed is None:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from centrode.render.drafting.drawing_page import (
     A1,
     DrawingPage,
-    Field,
+    SheetField,
     blacken,
     new_drawing_page,
     with_primes,
@@ -119,7 +119,7 @@ def _draw(page: DrawingPage, sheet: DrawingSheet, scale: DrawingScale | None) ->
             assert_never(sheet)
 
 
-def _field() -> Field:
+def _field() -> SheetField:
     return drawing_field(A1).part(1.0, 1.0, 1.0, 1.0)
 
 
@@ -170,7 +170,7 @@ def _draw_energies(page: DrawingPage, sheet: EnergySheet) -> str:
         left.part(bottom=float(field.size[1]) - upper, top=CORNER),
         right.part(bottom=float(field.size[1]) - upper, top=CORNER),
         right.part(top=upper, bottom=HIGH + ASIDE),
-        Field(beside.corner, np.array([beside.size[0], HIGH])),
+        SheetField(beside.corner, np.array([beside.size[0], HIGH])),
     )
     draw_energy_mass(page, fields, sheet.energy_mass)
     return DASH

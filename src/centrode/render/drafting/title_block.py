@@ -13,7 +13,7 @@ from centrode.render.drafting.drawing_page import (
     SMALLEST,
     USUAL,
     DrawingPage,
-    Field,
+    SheetField,
 )
 from centrode.render.drafting.recorder import MAIN, THIN
 from centrode.render.drawing.texts import plain
@@ -64,21 +64,21 @@ class Inscription:
         return ["\n".join(filter(None, (plain(self.block.title), name))) for name in self.names]
 
 
-def drawing_field(size: tuple[float, float]) -> Field:
+def drawing_field(size: tuple[float, float]) -> SheetField:
     """The field inside the frame."""
-    return Field.between(BINDING, MARGIN, size[0] - MARGIN, size[1] - MARGIN)
+    return SheetField.between(BINDING, MARGIN, size[0] - MARGIN, size[1] - MARGIN)
 
 
-def block_field(size: tuple[float, float]) -> Field:
+def block_field(size: tuple[float, float]) -> SheetField:
     """The field of the main inscription, in the lower right corner of the frame."""
     right = size[0] - MARGIN
-    return Field.between(right - WIDE, MARGIN, right, MARGIN + HIGH)
+    return SheetField.between(right - WIDE, MARGIN, right, MARGIN + HIGH)
 
 
-def turned_field(size: tuple[float, float]) -> Field:
+def turned_field(size: tuple[float, float]) -> SheetField:
     """The field of the repeated designation, in the upper left corner of the frame."""
     top = size[1] - MARGIN
-    return Field.between(BINDING, top - TURNED[1], BINDING + TURNED[0], top)
+    return SheetField.between(BINDING, top - TURNED[1], BINDING + TURNED[0], top)
 
 
 def draw_frame(page: DrawingPage, said: Inscription) -> None:
@@ -98,12 +98,12 @@ def _designation(said: Inscription) -> str:
     return f"{said.block.designation}.{said.number:02d}" if said.block.designation else ""
 
 
-def _rectangle(page: DrawingPage, field: Field, layer: str) -> None:
+def _rectangle(page: DrawingPage, field: SheetField, layer: str) -> None:
     (left, low), (right, top) = field.corner, field.end
     page.line([(left, low), (right, low), (right, top), (left, top), (left, low)], MAIN, layer)
 
 
-def _lines(page: DrawingPage, block: Field) -> None:
+def _lines(page: DrawingPage, block: SheetField) -> None:
     """Lines of the form: main between its parts, thin between rows of signatures."""
     x, y = block.corner
 
@@ -131,14 +131,14 @@ def _lines(page: DrawingPage, block: Field) -> None:
     upright(SHEETS, 3 * ROW, 4 * ROW)
 
 
-def _words(page: DrawingPage, block: Field, said: Inscription) -> None:
+def _words(page: DrawingPage, block: SheetField, said: Inscription) -> None:
     x, y = block.corner
 
     def write(
         left: float, low: float, right: float, top: float, text: str, *heights: float, start: bool = False
     ) -> None:
         if text:
-            field = Field.between(x + left, y + low, x + right, y + top)
+            field = SheetField.between(x + left, y + low, x + right, y + top)
             page.fit(field, text, heights or (SMALLEST, 2.0, 1.8), LAYER, start)
 
     heads = (_("Rev."), _("Sheet"), _("Doc. no."), _("Sign."), _("Date"))
@@ -160,7 +160,7 @@ def _words(page: DrawingPage, block: Field, said: Inscription) -> None:
     above = 8 * ROW + (COURSE if course else 0.0)
     write(CHANGES[-1], above, WIDE, HIGH, plain(_designation(said)), 7.0, HEADING, USUAL)
     write(CHANGES[-1], 8 * ROW, WIDE, above, course, USUAL, SMALLEST, 2.0, 1.6)
-    field = Field.between(x + CHANGES[-1], y + 3 * ROW, x + RIGHT, y + 8 * ROW)
+    field = SheetField.between(x + CHANGES[-1], y + 3 * ROW, x + RIGHT, y + 8 * ROW)
     height = page.largest_height(field, said.titles, (HEADING, USUAL, SMALLEST, 2.0))
     write(CHANGES[-1], 3 * ROW, RIGHT, 8 * ROW, said.titles[said.number - 1], height)
     write(LETTER, 7 * ROW, MASS, 8 * ROW, _("Lit."))

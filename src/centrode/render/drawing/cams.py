@@ -140,7 +140,7 @@ class FollowerDrawing:
         """The cam with the path of the roller's centre, the follower over it, and the hinges over both."""
         draw_profile(axes, self.cam, frame, CAM, CAM)
         if self.rolls:
-            path = self.cam.carried(self.path, frame)
+            path = self.cam.carried_places(self.path, frame)
             axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=2.0)
         if self.cam.pivot is None:
             axes.plot(*self._stem(frame).T, color=ROLLER, linewidth=2.4, solid_capstyle="butt", zorder=2.2)

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon
 
 from centrode.render.drawing import signs
 from centrode.render.drawing.linkage import frame_axes, write_names
-from centrode.render.drawing.style import GROUND, HAIR, HIDDEN, INK, Pen, marked, pens
+from centrode.render.drawing.style import GROUND, HAIR, HIDDEN, INK, Pen, marker_options, pens
 from centrode.scenes.places import corners
 from centrode.scenes.sphere import STEPS, Array, Globe, great_arc
 
@@ -132,7 +132,7 @@ def draw_arcs(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen], a
 def draw_marker(axes: Axes, globe: Globe, place: Array, pen: Pen, alpha: float) -> None:
     """The marker of a link at a place of its arc."""
     faint = alpha if globe.in_front(place) else 0.4 * alpha
-    axes.plot(*globe.flat(place), color=pen.colour, alpha=faint, zorder=3.1, **marked(pen, None))
+    axes.plot(*globe.flat(place), color=pen.colour, alpha=faint, zorder=3.1, **marker_options(pen, None))
 
 
 def draw_points(axes: Axes, globe: Globe, sample: int, links: Mapping[str, Pen]) -> None:

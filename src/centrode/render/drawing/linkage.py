@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 from centrode.model.mechanism import FRAME
 from centrode.render.drawing import signs
 from centrode.render.drawing.cams import draw_cams
-from centrode.render.drawing.style import GROUND, INK, LINK, Pen, halo, marked, pens
+from centrode.render.drawing.style import GROUND, INK, LINK, Pen, halo, marker_options, pens
 from centrode.render.drawing.tags import drive_arcs, ground_line, label_places, lines, unit
 from centrode.render.drawing.texts import plain
 from centrode.scenes.linkage import cylinders, pitch_circles, round_track, straight_track, wheel_at
@@ -155,7 +155,12 @@ def draw_body(
         if pen.marker and alpha == 1.0:
             middle = 0.5 * (path[0] + path[1])
             axes.plot(
-                middle[:1], middle[1:], color=pen.colour, alpha=alpha, zorder=level, **marked(pen, None)
+                middle[:1],
+                middle[1:],
+                color=pen.colour,
+                alpha=alpha,
+                zorder=level,
+                **marker_options(pen, None),
             )
 
 

@@ -137,7 +137,7 @@ def numbered_pen(number: int, colours: Sequence[str] = PALETTE) -> Pen:
     return Pen(colours[number % len(colours)], marker=marker)
 
 
-def marked(pen: Pen, at: Any = 0.12) -> dict[str, Any]:
+def marker_options(pen: Pen, at: Any = 0.12) -> dict[str, Any]:
     """The marker of a pen for a line of matplotlib: along a curve, or in the places `at` of it; nothing without one."""
     if not pen.marker:
         return {}
@@ -160,7 +160,7 @@ DARK_GROUND = 0.09  # lightness of what was white
 LEAST = 0.58  # lightness that a coloured line gets at least
 
 
-def darkened(figure: Figure) -> Figure:
+def darken(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
     for artist in {id(one): one for one in figure.findobj()}.values():  # some are found twice
         recolour(artist)

@@ -234,7 +234,7 @@ def _wide_enough(scene: LinkageScene, discs: Sequence[CarriedDisc], sample: int)
     """The scene with corners that hold the discs too."""
     corners = [np.array([scene.low, scene.high])]
     for one in discs:
-        at = scene.carried(one.link, one.place, sample)
+        at = scene.carried_places(one.link, one.place, sample)
         if at is not None:
             corners.append(np.array([at - _reach(scene, one), at + _reach(scene, one)]))
     low, high = box(corners)
@@ -243,7 +243,7 @@ def _wide_enough(scene: LinkageScene, discs: Sequence[CarriedDisc], sample: int)
 
 def _draw_disc(axes: Axes, scene: LinkageScene, sample: int, one: CarriedDisc, colour: str) -> Circle | None:
     """An arm from the base, and a filled circle; great discs lie behind the links."""
-    at, base = scene.carried(one.link, one.place, sample), scene.at(sample).get(one.base)
+    at, base = scene.carried_places(one.link, one.place, sample), scene.at(sample).get(one.base)
     if at is None or base is None:
         return None
     axes.plot([base[0], at[0]], [base[1], at[1]], color=colour, linewidth=2.4, zorder=2.9)

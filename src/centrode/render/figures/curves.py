@@ -37,11 +37,11 @@ from centrode.render.drawing.style import (
     TITLE,
     Decimals,
     Pen,
-    marked,
+    marker_options,
 )
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.grid_layout import GridLayout
-from centrode.render.figures.interpolation import interpolated, jumps
+from centrode.render.figures.interpolation import interpolated_curve, jumps
 from centrode.sheets.plots import EventKind
 
 Array = NDArray[np.float64]
@@ -172,7 +172,7 @@ WILD = 8.0  # a curve that runs to infinity at a limit is shown up to this many 
 
 
 @dataclass(frozen=True)
-class Panel:
+class QuantityCurves:
     """Curves of one quantity.
 
     Attributes
@@ -202,7 +202,9 @@ class Panel:
     areas: Sequence[str] = ()
 
 
-def sheet(title: str, subtitle: str, rows: Sequence[Sequence[Panel]], abscissa: DrawnAbscissa) -> Figure:
+def sheet(
+    title: str, subtitle: str, rows: Sequence[Sequence[QuantityCurves]], abscissa: DrawnAbscissa
+) -> Figure:
     """A figure of panels in rows and columns, all over the same abscissa."""
     columns = max(map(len, rows))
     width = PAGE_WIDTH / columns
@@ -246,7 +248,9 @@ def write_title(figure: Figure, title: str, subtitle: str) -> None:
     figure.suptitle("\n".join(lines), fontsize=size)
 
 
-def _draw_curve(axes: Axes, panel: Panel, abscissa: DrawnAbscissa, name: str, width: float) -> Line2D:
+def _draw_curve(
+    axes: Axes, panel: QuantityCurves, abscissa: DrawnAbscissa, name: str, width: float
+) -> Line2D:
     """A curve through its samples; a jump is dashed."""
     parts, pen, across = abscissa.parts(panel.curves[name]), panel.pens[name], abscissa.drawn
     slopes = abscissa.parts(panel.slopes[name]) if name in panel.slopes else (None, None)
@@ -262,7 +266,10 @@ def _draw_curve(axes: Axes, panel: Panel, abscissa: DrawnAbscissa, name: str, wi
         )
     places, heights = np.insert(across, leaps + 1, np.nan), np.insert(parts[0], leaps + 1, np.nan)
     known = None if slopes[0] is None else np.insert(slopes[0], leaps + 1, np.nan)
-    regular, beyond = interpolated(places, heights, known), interpolated(across, parts[1], slopes[1])
+    regular, beyond = (
+        interpolated_curve(places, heights, known),
+        interpolated_curve(across, parts[1], slopes[1]),
+    )
     return draw_parts(axes, (regular[0], beyond[0]), (regular[1], beyond[1]), name, pen, width)
 
 
@@ -275,7 +282,7 @@ def wrap_label(axes: Axes, inches: float) -> None:
         )
 
 
-def draw_panel(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> list[tuple[Line2D, str]]:
+def draw_panel(axes: Axes, panel: QuantityCurves, abscissa: DrawnAbscissa) -> list[tuple[Line2D, str]]:
     """Draw the curves with their events; returns a handle and a name for each."""
     widths = band_widths(panel)
     drawn = [(_draw_curve(axes, panel, abscissa, name, widths[name]), name) for name in panel.curves]
@@ -289,7 +296,7 @@ def draw_panel(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> list[tuple[
     return drawn
 
 
-def band_widths(panel: Panel) -> dict[str, float]:
+def band_widths(panel: QuantityCurves) -> dict[str, float]:
     """Widths of the curves: one that later curves cover entirely is wider, so that all of them show."""
     names = list(panel.curves)
     if len(names) > 2 * len(PALETTE):
@@ -297,7 +304,7 @@ def band_widths(panel: Panel) -> dict[str, float]:
     return {name: CURVE + 1.2 * covers(panel, name, names[k + 1 :]) for k, name in enumerate(names)}
 
 
-def covers(panel: Panel, name: str, later: Sequence[str]) -> int:
+def covers(panel: QuantityCurves, name: str, later: Sequence[str]) -> int:
     """How many of the later curves coincide with a curve to the width of a line."""
     curve = panel.curves[name]
     known = curve[np.isfinite(curve)]
@@ -333,7 +340,7 @@ def draw_parts(
         linewidth=width,
         label=name,
         zorder=level,
-        **marked(pen) | lonely(y[0]),
+        **marker_options(pen) | lonely(y[0]),
     )
     return line
 
@@ -347,7 +354,7 @@ def lonely(values: Array) -> dict[str, Any]:
     )
 
 
-def set_range(axes: Axes, panel: Panel, abscissa: DrawnAbscissa) -> None:
+def set_range(axes: Axes, panel: QuantityCurves, abscissa: DrawnAbscissa) -> None:
     """Limits of both axes: the whole motion across, what can be read up and down."""
     if abscissa.range is not None:
         axes.set_xlim(abscissa.range)
@@ -391,7 +398,7 @@ def say_nothing_known(axes: Axes) -> None:
     )
 
 
-def draw_key(abscissa: DrawnAbscissa, panel: Panel) -> list[tuple[Artist, str]]:
+def draw_key(abscissa: DrawnAbscissa, panel: QuantityCurves) -> list[tuple[Artist, str]]:
     """Entries of the legend for what is not a curve of its own."""
     kinds = {kind for _value, kind in abscissa.marks}
     words = {EventKind.LIMIT: _("limit"), EventKind.CHANGE_POINT: _("change point")}

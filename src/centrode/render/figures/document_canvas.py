@@ -41,7 +41,7 @@ class KeptFormulas(MathTextParser):  # type: ignore[type-arg]
         prop = None if prop is None else prop.copy()
         own: Any = self
         if own._output_type == "vector" and prop is not None:
-            return self._scaled(s, dpi, prop)
+            return self._scaled_parse(s, dpi, prop)
         return self._kept(s, dpi, prop, antialiased)
 
     # one parser for the process: nothing else is held by the cache
@@ -50,7 +50,7 @@ class KeptFormulas(MathTextParser):  # type: ignore[type-arg]
         return super().parse(text, dpi, prop, antialiased=antialiased)
 
     @functools.lru_cache(KEPT)  # noqa: B019
-    def _scaled(self, text: str, dpi: float, prop: Any) -> VectorParse:
+    def _scaled_parse(self, text: str, dpi: float, prop: Any) -> VectorParse:
         points = prop.get_size_in_points() / EM
         scale = points * dpi / 72.0
         prop.set_size(EM)

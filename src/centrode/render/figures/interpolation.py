@@ -16,7 +16,7 @@ STEEP, GREAT = 8.0, 0.05
 """A step is a jump if it is so many times as steep as both its neighbours, and such a part of the curve's range."""
 
 
-def interpolated(x: Array, y: Array, slopes: Array | None = None) -> tuple[Array, Array]:
+def interpolated_curve(x: Array, y: Array, slopes: Array | None = None) -> tuple[Array, Array]:
     """A curve through more places: on each step the cubic of Hermite; straight where it jumps.
 
     Parameters

@@ -28,7 +28,7 @@ from centrode.render.drawing.style import (
     PAGE_WIDTH,
     Decimals,
     Pen,
-    marked,
+    marker_options,
     pens,
 )
 from centrode.render.drawing.texts import formula, label_with_unit
@@ -40,7 +40,7 @@ from centrode.render.figures.curves import (
     write_legend,
     write_title,
 )
-from centrode.render.figures.interpolation import interpolated
+from centrode.render.figures.interpolation import interpolated_curve
 from centrode.render.figures.plots import drawn_abscissa
 from centrode.render.spelling import FigureSpelling
 from centrode.scenes.linkage import scene_of
@@ -100,7 +100,7 @@ def paths_figure(picture: PathsPicture, display: Display) -> Figure:
             )
             path = np.where(scene.in_front(path)[:, None], scene.flat(path), np.nan)
         x, y = (abscissa.parts(path[:, axis]) for axis in (0, 1))
-        regular, beyond = (interpolated(one, other) for one, other in zip(x, y, strict=True))
+        regular, beyond = (interpolated_curve(one, other) for one, other in zip(x, y, strict=True))
         x, y = (regular[0], beyond[0]), (regular[1], beyond[1])
         drawn.append((draw_parts(axes, x, y, name, pen, level=7.0), name))
     key = []
@@ -164,7 +164,7 @@ def label_lengths(axes: Axes, scene: LinkageScene) -> None:
 
 def link_line(pen: Pen) -> Line2D:
     """What stands for a link in a legend."""
-    return Line2D([], [], color=pen.colour, linewidth=LINK, **marked(pen, None))
+    return Line2D([], [], color=pen.colour, linewidth=LINK, **marker_options(pen, None))
 
 
 def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:

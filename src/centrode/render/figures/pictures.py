@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.render.drawing.style import darkened, house_style
+from centrode.render.drawing.style import darken, house_style
 from centrode.render.drawing.walking_wheel import wheel_figure
 from centrode.render.figures.areas import area_figure
 from centrode.render.figures.chain_atlas import atlas_figure
@@ -90,7 +90,7 @@ def write_pictures(
     drawn = figures_of(pictures, display)
     for number, (name, figure) in enumerate(drawn.items(), start=1):
         say(_("drawing {name}").format(name=name), number, len(drawn))
-        save_figures({name: darkened(figure) if dark else figure}, folder)
+        save_figures({name: darken(figure) if dark else figure}, folder)
 
 
 def figure_of(picture: Picture, display: Display) -> Figure:

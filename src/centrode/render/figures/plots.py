@@ -22,7 +22,7 @@ from centrode.render.drawing.style import (
     THIN,
     Decimals,
     Pen,
-    marked,
+    marker_options,
     numbered_pen,
 )
 from centrode.render.figures.curves import (
@@ -30,7 +30,7 @@ from centrode.render.figures.curves import (
     LONE_INCHES,
     PANEL_INCHES,
     DrawnAbscissa,
-    Panel,
+    QuantityCurves,
     angle_ticks,
     legend_height,
     sheet,
@@ -184,7 +184,7 @@ def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> Non
             write_legend(axes, [*entries, (Line2D([], [], **look), name)])
 
 
-def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Figure:
+def _sizes(panels: Sequence[QuantityCurves], abscissa: DrawnAbscissa, least: float) -> Figure:
     """Panels below each other with the sizes of their curves on logarithmic scales."""
     each = LONE_INCHES if len(panels) == 1 else PANEL_INCHES
     height = ABOVE_INCHES + sum(each + legend_height(list(panel.curves)) for panel in panels)
@@ -201,7 +201,7 @@ def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Fi
                 color=pen.colour,
                 linestyle=pen.dashes,
                 label=name,
-                **marked(pen),
+                **marker_options(pen),
             )
             handles.append((line, name))
         axes.set_yscale("log")
@@ -227,7 +227,7 @@ def drawn_abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbsciss
     )
 
 
-def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> Panel:
+def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> QuantityCurves:
     factor, label, unit = spelling.label(panel.label)
     # legends write names as they are: plain text, in which dollar signs are escaped where it is drawn
     names = [PrintSpelling(spelling.display).text(curve.name) for curve in panel.curves]
@@ -239,7 +239,7 @@ def _panel(panel: CurvePanel, spelling: FigureSpelling, across: float = 1.0) -> 
         if curve.slopes is not None
     }
     areas = [PrintSpelling(spelling.display).text(band.name) for band in panel.bands]
-    return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend, slopes, areas)
+    return QuantityCurves(label, unit, curves, pens, factor * panel.scale, panel.legend, slopes, areas)
 
 
 def _pen(curve: Curve) -> Pen:

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from centrode.locale import _, ngettext
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe, draw_line
 from centrode.render.drawing.linkage import draw_mechanism
-from centrode.render.drawing.style import INK, LINK, MUTED, NAME, PAGE_WIDTH, SMALL, marked, pens
+from centrode.render.drawing.style import INK, LINK, MUTED, NAME, PAGE_WIDTH, SMALL, marker_options, pens
 from centrode.render.drawing.tags import Tag, drive_arcs, lines, write_tags
 from centrode.render.drawing.texts import plain
 from centrode.render.drawing.window import carried_by, segments_of, widen, within
@@ -283,7 +283,7 @@ class _Drawing:
         key.set_axis_off()
         links = pens(self.mechanism.link_names)
         handles = [
-            Line2D([], [], color=links[name].colour, linewidth=LINK, **marked(links[name], None))
+            Line2D([], [], color=links[name].colour, linewidth=LINK, **marker_options(links[name], None))
             if name in links
             else Line2D([], [], color=INK, linewidth=0.0)
             for name, _text in diagram.bodies

@@ -23,7 +23,7 @@ from centrode.render.drawing.style import (
     SMALL,
     THIN,
     Decimals,
-    marked,
+    marker_options,
     numbered_pen,
 )
 from centrode.render.figures.curves import angle_ticks, legend_height, wrap_label, write_legend, write_title
@@ -69,7 +69,7 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
     grid[-1].set_xlim(low, high)
     if keyed:
         pens = [numbered_pen(curve.place) for curve in plot.panels[0].curves]
-        keys = [Line2D([], [], color=pen.colour, **marked(pen, None)) for pen in pens]
+        keys = [Line2D([], [], color=pen.colour, **marker_options(pen, None)) for pen in pens]
         write_legend(grid[0], list(zip(keys, names, strict=True)))
     write_title(figure, spelling.text(plot.title), words.text(plot.mechanism))
     return figure
@@ -83,7 +83,7 @@ def _draw(
     for curve in panel.curves:
         for piece in pieces:
             pen = numbered_pen(curve.place)
-            axes.plot(across[piece], factor * curve.values[piece], color=pen.colour, **marked(pen))
+            axes.plot(across[piece], factor * curve.values[piece], color=pen.colour, **marker_options(pen))
     for bound in panel.bounds:
         axes.axhline(factor * bound, color=PALETTE[1], linewidth=THIN, linestyle=CENTRE_LINE)
         axes.annotate(

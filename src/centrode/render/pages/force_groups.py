@@ -96,7 +96,7 @@ def draw_guide(
     rail = RAIL * page.signs * view.scale
     ends = [place - rail * along, place + rail * along]
     if drawn.has_line:
-        start = scene.carried(guide.on, next(iter(scene.mechanism.points_of(guide.on).values())), 0)
+        start = scene.carried_places(guide.on, next(iter(scene.mechanism.points_of(guide.on).values())), 0)
         reach = [*ends, *([] if start is None else [start])]
         ways = [float((end - place) @ along) for end in reach]
         line = [place + min(ways) * along, place + max(ways) * along]

@@ -60,7 +60,7 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     factor, unit = shown_as("m", display)
     greatest = max((abs(one.rate) for one in sheet.velocities), default=0.0)
     per_mm = max(round_scale(greatest, LONGEST), sheet.finest)
-    scene, view = placed(sheet, factor, per_mm)
+    scene, view = placed_scene(sheet, factor, per_mm)
     axes = view.axes(page)
     colours = pens(sheet.mechanism.link_names)
     draw_bodies(axes, scene, 0, colours)
@@ -83,7 +83,7 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     return page.figure
 
 
-def placed(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
+def placed_scene(sheet: InstantPage, factor: float, per_mm: float) -> tuple[LinkageScene, PageView]:
     """The scene with its signs as large as on the page, and a view of all but the instant centres that do not fit.
 
     Slots are as long as their pins travel in the whole motion; the view is that of the instant.

@@ -12,7 +12,7 @@ from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import spelled_unit
 from centrode.render.drawing import signs
-from centrode.render.drawing.style import CURVE, INK, marked, pens
+from centrode.render.drawing.style import CURVE, INK, marker_options, pens
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.force_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
 from centrode.render.pages.force_signs import force_arrows, moment_arc
@@ -80,7 +80,7 @@ def draw_outlines(page: Page, view: PageView, sheet: LeverPage, factor: float) -
         path = np.array([*places, places[0]])
         pen = colours[name]
         page.overlay.plot(*path.T, color=pen.colour, linewidth=CURVE, zorder=4)
-        page.overlay.plot(*path[:2].mean(axis=0), color=pen.colour, zorder=4, **marked(pen, None))
+        page.overlay.plot(*path[:2].mean(axis=0), color=pen.colour, zorder=4, **marker_options(pen, None))
         page.avoid(pairwise(path))
 
 

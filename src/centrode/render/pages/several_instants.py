@@ -56,7 +56,7 @@ def instants_figure(sheet: InstantsPage, display: Display) -> Figure:
     factor, unit = shown_as("m", display)
     per_speed = _scale_of([one.velocities for one in sheet.instants])
     per_rate = _scale_of(sheet.accelerations)
-    scenes, view = _placed(sheet, factor)
+    scenes, view = _placed_scenes(sheet, factor)
     axes, colours = view.axes(page), pens(mechanism.link_names)
     last = len(scenes) - 1
     for number, scene in enumerate(scenes):
@@ -100,7 +100,7 @@ def _scale_of(points: Sequence[Sequence[MovingPoint]]) -> float:
     return round_scale(max((abs(one.rate) for some in points for one in some), default=0.0), LONGEST)
 
 
-def _placed(sheet: InstantsPage, factor: float) -> tuple[list[LinkageScene], PageView]:
+def _placed_scenes(sheet: InstantsPage, factor: float) -> tuple[list[LinkageScene], PageView]:
     """The scenes with signs as large as on the page, and a view of all but the instant centres that do not fit."""
     course = sheet.instants[0].course.drop_dims("event", errors="ignore")
     now = [scene_of(sheet.mechanism, one.instant) for one in sheet.instants]

@@ -103,7 +103,7 @@ def latex_document(report: Report, figures: str) -> tuple[bytes, Mapping[str, by
         tree, pictures = tree_of(
             report,
             _numbered_formula,
-            _referred,
+            _number_reference,
             "pdf",
             contents=lambda: [raw_block("latex", TABLE_OF_CONTENTS)],
         )
@@ -210,6 +210,6 @@ def _numbered_formula(latex: str, number: int) -> list[Element]:
     return [raw_block("latex", f"\\begin{{equation}}\\label{{eq:{number}}}\n{latex}\n\\end{{equation}}")]
 
 
-def _referred(number: int) -> Element:
+def _number_reference(number: int) -> Element:
     """The number of a formula that LaTeX looks up."""
     return raw_inline("latex", f"\\eqref{{eq:{number}}}")

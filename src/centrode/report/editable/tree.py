@@ -27,8 +27,8 @@ from centrode.render.document.blocks import (
     TableBlock,
     TitlePageBlocks,
 )
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.figures import picture_width
-from centrode.render.document.numbering import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.editable.mathematics import LatexFormulas, latex_formulas, spellings_of
 from centrode.report.spoken_formulas import spoken_picture
@@ -206,7 +206,7 @@ class DocumentTree:
         for number, chosen in enumerate(_dealt(widths)):
             caption = self.inlines(block.caption) if block.caption and not number else []
             if block.caption and number:
-                yield styled(TABLE_CAPTION, continued_table(str(block.number)))
+                yield styled_paragraph(TABLE_CAPTION, continued_table(str(block.number)))
             yield self._grid(block, chosen, widths, caption)
 
     def _grid(
@@ -247,7 +247,7 @@ def continued_table(number: str) -> str:
     return _("Table {number}, continued").format(number=number)
 
 
-def styled(style: str, text: str) -> Element:
+def styled_paragraph(style: str, text: str) -> Element:
     """A paragraph with a style of its own, where the writer knows styles."""
     return _node("Div", [["", [], [["custom-style", style]]], [paragraph([plain_text(text)])]])
 
@@ -272,7 +272,7 @@ def tree_of(
     return tree.document(report), tree.pictures
 
 
-def displayed(latex: str) -> Element:
+def displayed_formula(latex: str) -> Element:
     """A formula on a line of its own."""
     return paragraph([_node("Math", [{"t": "DisplayMath"}, latex])])
 

@@ -22,10 +22,10 @@ from centrode.report.editable.tree import (
     TABLE_CAPTION,
     Element,
     cell_of,
-    displayed,
+    displayed_formula,
     raw_block,
     raw_inline,
-    styled,
+    styled_paragraph,
     tree_of,
 )
 from centrode.report.page_styles import page_style
@@ -55,7 +55,7 @@ def word_document(report: Report) -> bytes:
         tree, pictures = tree_of(
             report,
             _numbered_formula,
-            _referred,
+            _number_reference,
             "png",
             cover=_cover,
             contents=lambda: [raw_block("openxml", _contents(words))],
@@ -73,13 +73,15 @@ def word_document(report: Report) -> bytes:
             folder=folder,
         )
     with speaking(report.language):
-        return _change_parts(made, _finished(report), {"word/footer-page.xml": page_number(report.standard)})
+        return _change_parts(
+            made, _finished_parts(report), {"word/footer-page.xml": page_number(report.standard)}
+        )
 
 
 def _numbered_formula(latex: str, number: int) -> list[Element]:
     """A formula with its number at the edge of the page, a field that can be referred to."""
     # a comma between digits is punctuation in mathematics, unless the number is text
-    formula = cell_of([displayed(DECIMAL.sub(r"\\text{\1,\2}", latex))["c"][0]], "AlignLeft")
+    formula = cell_of([displayed_formula(DECIMAL.sub(r"\\text{\1,\2}", latex))["c"][0]], "AlignLeft")
     name = f"formula-{number}"
     field = (
         f'<w:bookmarkStart w:id="{90000 + number}" w:name="{name}"/><w:r><w:t>(</w:t></w:r>'
@@ -101,7 +103,7 @@ def _numbered_formula(latex: str, number: int) -> list[Element]:
     ]
 
 
-def _referred(number: int) -> Element:
+def _number_reference(number: int) -> Element:
     """The number of a formula as a field that repeats the one at its formula."""
     field = (
         f'<w:fldSimple w:instr=" REF formula-{number} \\h "><w:r><w:t>({number})</w:t></w:r></w:fldSimple>'
@@ -112,17 +114,21 @@ def _referred(number: int) -> Element:
 def _heading_without_number(heading: Heading, role: str) -> Element:
     """A heading without a number: of an element, which contents list unless it stands before them, or in one."""
     level = ELEMENT_SECTION if heading.level > 1 else ELEMENT_FRONT if role == "front" else ELEMENT
-    return styled(level, heading.title)
+    return styled_paragraph(level, heading.title)
 
 
 def _cover(page: TitlePageBlocks) -> list[Element]:
     """The title page, and what ends it."""
-    middle = [styled(COVER, one) for one in (page.course, page.variant) if one]
-    found = [styled(COVER, line) for line in page.head]
-    found += [styled(COVER_WORK, page.work)] if page.work else []
-    found += [*middle[: bool(page.course)], styled("Title", page.title), *middle[bool(page.course) :]]
-    found += [styled(COVER_PEOPLE, f"{label}: {name}") for label, name in page.people]
-    found += [styled(COVER_FOOT, page.foot)] if page.foot else []
+    middle = [styled_paragraph(COVER, one) for one in (page.course, page.variant) if one]
+    found = [styled_paragraph(COVER, line) for line in page.head]
+    found += [styled_paragraph(COVER_WORK, page.work)] if page.work else []
+    found += [
+        *middle[: bool(page.course)],
+        styled_paragraph("Title", page.title),
+        *middle[bool(page.course) :],
+    ]
+    found += [styled_paragraph(COVER_PEOPLE, f"{label}: {name}") for label, name in page.people]
+    found += [styled_paragraph(COVER_FOOT, page.foot)] if page.foot else []
     return [*found, raw_block("openxml", '<w:p><w:r><w:br w:type="page"/></w:r></w:p>')]
 
 
@@ -202,7 +208,7 @@ def _relations(text: str) -> str:
     return text.replace("</Relationships>", f"{one}</Relationships>")
 
 
-def _finished(report: Report) -> Mapping[str, Callable[[str], str]]:
+def _finished_parts(report: Report) -> Mapping[str, Callable[[str], str]]:
     """What changes in each part of the document when it is made."""
     style = page_style(report.standard)
     foot = FOOT.replace("footer", "header") if style.number == "top-right" else FOOT

@@ -63,7 +63,7 @@ class Drawings:
     pens: dict[str, str] = field(default_factory=dict)
     count: int = 0
 
-    def embedded(self, svg: bytes, label: str) -> str:
+    def embedded_figure(self, svg: bytes, label: str) -> str:
         """A figure as an element of the page.
 
         Raises InputError for what is no SVG.
@@ -88,7 +88,7 @@ class Drawings:
         self._share_texts(whole)
         return _written(whole)
 
-    def shared(self) -> str:
+    def shared_outlines(self) -> str:
         """The outlines that figures share; it stands before them."""
         if not self.letters:
             return ""

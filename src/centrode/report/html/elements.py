@@ -77,7 +77,7 @@ class Elements:
             return self.formula(block)
         if isinstance(block, SystemBlock):
             system = self.formulas.system(block.matrix, block.unknowns, block.right)
-            return numbered(f'<div class="one system">{system}</div>', block.number)
+            return numbered_formula(f'<div class="one system">{system}</div>', block.number)
         if isinstance(block, ReferenceBlock):
             return f"<p>{''.join(map(_piece, block.pieces))}</p>"
         if isinstance(block, TableBlock):
@@ -98,12 +98,12 @@ class Elements:
                 piece for part in line[1:] for piece in self.formulas.pieces(part, relation="=")
             )
             if aligned:
-                left = self.formulas.displayed(line[0])
+                left = self.formulas.display_formula(line[0])
                 drawn.append(f'<div class="left">{left}</div><div class="right">{right}</div>')
             else:
                 drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
         kind = "aligned" if aligned else "running"
-        return numbered(f'<div class="{kind}">{"".join(drawn)}</div>', block.number)
+        return numbered_formula(f'<div class="{kind}">{"".join(drawn)}</div>', block.number)
 
     def table(self, block: TableBlock) -> str:
         """Rows under heads, with a number if it has a caption."""
@@ -123,7 +123,8 @@ class Elements:
         if block.caption:
             number = html.escape(_("Table {number}").format(number=block.number))
             name = f' aria-labelledby="t{block.number}"'
-            caption = f'<p class="caption" id="t{block.number}">{self._numbered(number)}{self.text(block.caption)}</p>'
+            opening = self._caption_opening(number)
+            caption = f'<p class="caption" id="t{block.number}">{opening}{self.text(block.caption)}</p>'
         drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         return f'{caption}<div class="table">{drawn}</div>'
 
@@ -144,21 +145,21 @@ class Elements:
 
     def drawing(self, block: Picture) -> str:
         """A figure alone."""
-        return self.drawings.embedded(block.svg, spoken_picture(block))
+        return self.drawings.embedded_figure(block.svg, spoken_picture(block))
 
     def caption(self, block: Picture | Moving) -> str:
         """The number of a figure, and what it shows; nothing where nothing is said."""
         if not block.caption:
             return ""
         number = html.escape(_("Figure {number}").format(number=block.number))
-        return f"<figcaption>{self._numbered(number)}{self.text(block.caption)}</figcaption>"
+        return f"<figcaption>{self._caption_opening(number)}{self.text(block.caption)}</figcaption>"
 
-    def _numbered(self, word: str) -> str:
+    def _caption_opening(self, word: str) -> str:
         """What a caption begins with: "Figure 3. ", in bold letters unless a standard has a dash."""
         return f"<b>{word}.</b> " if self.separator == ". " else f"{word}{self.separator}"
 
 
-def numbered(formula: str, number: int) -> str:
+def numbered_formula(formula: str, number: int) -> str:
     """A formula on lines of its own, with its number, which can be referred to."""
     shown = f'<span class="number" id="formula-{number}">({number})</span>'
     return f'<div class="formulas">{formula}{shown}</div>'

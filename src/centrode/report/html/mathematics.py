@@ -39,7 +39,7 @@ class Formulas:
         """A formula in a sentence."""
         return _written(list(self.found[spelled]))
 
-    def displayed(self, spelled: str) -> str:
+    def display_formula(self, spelled: str) -> str:
         """A formula on a line of its own, that stays in one piece."""
         return _written(list(self.found[spelled]), display=True)
 

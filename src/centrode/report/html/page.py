@@ -8,7 +8,7 @@ from functools import cache
 
 from centrode.locale import _, speaking
 from centrode.render.document.blocks import Moving, Report
-from centrode.render.document.numbering import number_blocks
+from centrode.render.document.captions import number_blocks
 from centrode.render.document.outline import Heading, OutlinedChapter, outline_of
 from centrode.report.html.elements import Elements, formulas_in
 from centrode.report.html.fonts import embedded_font, font_letters
@@ -73,7 +73,7 @@ def _page(report: Report) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{page_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n"
-        f'{elements.drawings.shared()}\n<div class="sheet">\n'
+        f'{elements.drawings.shared_outlines()}\n<div class="sheet">\n'
         f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
         f"<main>\n{main}</main>\n</div>\n"
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"

@@ -77,7 +77,7 @@ def _at(study: ReportStudy, moment: Moment) -> InstantAnswers:
     here = moment.data.isel(sample=moment.sample)
     links: dict[str, tuple[float, ...]] = {}
     points: dict[str, tuple[float, ...]] = {}
-    if moment.reached:
+    if moment.is_reached:
         dimension, names = ("link", OF_LINKS) if study.is_planar else ("joint", ON_SPHERE)
         for label in here[dimension].values.tolist():
             links[label] = tuple(float(here[name].sel({dimension: label})) for name in names)
@@ -86,12 +86,12 @@ def _at(study: ReportStudy, moment: Moment) -> InstantAnswers:
             points[point] = tuple(float(np.linalg.norm(vector)) for vector in vectors)
     return InstantAnswers(
         moment.title,
-        moment.reached,
+        moment.is_reached,
         float(here["time"]),
         tuple(here["drive_value"].values.tolist()),
         links,
         points,
-        _drives(study, moment) if moment.reached else {},
+        _drives(study, moment) if moment.is_reached else {},
     )
 
 

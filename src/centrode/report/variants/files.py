@@ -26,7 +26,7 @@ from centrode.topics.equations import INTEGRATE
 
 if TYPE_CHECKING:
     from centrode.assignments.results import VariantResults, VariantRow, Variants
-    from centrode.render.table_spelling import TableSpelling
+    from centrode.render.table_files import TableSpelling
 
 ANSWERS = "answers.json"
 

@@ -28,7 +28,7 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
-from centrode.render.table_spelling import PLAIN, TableSpelling
+from centrode.render.table_files import PLAIN, TableSpelling
 from centrode.sweeps.clusters import ClusterSource, open_cluster, wanted_libraries
 from centrode.sweeps.parameter_studies import analysis_results, check_analysis
 from centrode.topics.presentation import sheet_of
@@ -68,7 +68,7 @@ class WritesMore(Protocol):
 
 
 @dataclass(frozen=True)
-class Task:
+class VariantTask:
     """One variant to be computed into a folder; plain data, which goes to another process."""
 
     topology: str
@@ -89,7 +89,7 @@ class Task:
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
-def finished_row(task: Task) -> VariantRow | None:
+def finished_row(task: VariantTask) -> VariantRow | None:
     """The row of a variant whose files are there; None where they are not, or are those of other numbers."""
     told = _read_marker(task)
     try:
@@ -98,7 +98,7 @@ def finished_row(task: Task) -> VariantRow | None:
         return None
 
 
-def _read_marker(task: Task) -> dict[str, Any]:
+def _read_marker(task: VariantTask) -> dict[str, Any]:
     """What a variant's marker holds; nothing where there is none that can be read."""
     try:
         told = json.loads((task.folder / MARKER).read_text(encoding="utf-8"))
@@ -107,7 +107,7 @@ def _read_marker(task: Task) -> dict[str, Any]:
     return told if isinstance(told, dict) else {}
 
 
-def run(task: Task) -> VariantRow:
+def run(task: VariantTask) -> VariantRow:
     """Compute one variant and write its folder; a fault of the program is told in its row, and tried again later."""
     task.folder.mkdir(parents=True, exist_ok=True)
     draft = task.folder / ".draft"
@@ -132,7 +132,7 @@ def run(task: Task) -> VariantRow:
         clear_folder(draft)
 
 
-def _exchange(task: Task, draft: Path, row: VariantRow) -> None:
+def _exchange(task: VariantTask, draft: Path, row: VariantRow) -> None:
     """Put new files into the place of those of an earlier run; a marker without a digest stands while that goes on.
 
     Raises InputError before anything is touched where one of them is a file that was read.
@@ -167,7 +167,7 @@ def _write(results: VariantResults, folder: Path, spelling: TableSpelling, *, fi
             render.write_pictures(sheet.pictures, folder, mechanism.display)
 
 
-def _write_analysis(mechanism: Mechanism, task: Task, folder: Path) -> None:
+def _write_analysis(mechanism: Mechanism, task: VariantTask, folder: Path) -> None:
     """Tables and figures of the analysis of a variant."""
     sheet = sheet_of(analysis_results(mechanism, str(task.compute)))
     for name, table in sheet.tables.items():
@@ -242,7 +242,7 @@ def write_variants(
         check_analysis(compute)
     given = read_variants(topology, table)
     tasks = [
-        Task(
+        VariantTask(
             mechanism_text(variant.base(topology)),
             replace(variant, topology=None),
             folder / f"variant-{variant.name}",
@@ -278,7 +278,7 @@ def _check_jobs(jobs: object) -> None:
 
 
 def _all(
-    tasks: Sequence[Task], jobs: int, progress: Progress | None, cluster: ClusterSource
+    tasks: Sequence[VariantTask], jobs: int, progress: Progress | None, cluster: ClusterSource
 ) -> list[VariantRow]:
     """Rows of all tasks, those of finished ones from their markers."""
     rows = {task.variant.name: row for task in tasks if (row := finished_row(task)) is not None}
@@ -298,7 +298,7 @@ def _all(
     return [rows[task.variant.name] for task in tasks]
 
 
-def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
+def _several(tasks: Sequence[VariantTask], jobs: int) -> Iterator[VariantRow]:
     """Rows as processes finish them; interrupted, those that run are finished and the others left."""
     context = multiprocessing.get_context("spawn")
     size = min(jobs, len(tasks))
@@ -329,7 +329,7 @@ def _prepare(read: Sequence[Input]) -> None:
 _one_at_a_time = threading.Lock()
 
 
-def _on_cluster(tasks: Sequence[Task], cluster: ClusterSource) -> Iterator[VariantRow]:
+def _on_cluster(tasks: Sequence[VariantTask], cluster: ClusterSource) -> Iterator[VariantRow]:
     """Rows as workers finish them; nothing is begun where every variant is finished."""
     if not tasks:
         return
@@ -341,7 +341,7 @@ def _on_cluster(tasks: Sequence[Task], cluster: ClusterSource) -> Iterator[Varia
             yield VariantRow(**row)
 
 
-def task_text(task: Task) -> str:
+def task_text(task: VariantTask) -> str:
     """A variant to be computed, as JSON from which `task_of_text` has it again."""
     told = {
         "topology": task.topology,
@@ -359,7 +359,7 @@ def task_text(task: Task) -> str:
     return json.dumps(told)
 
 
-def task_of_text(text: str, more: WritesMore | None) -> Task:
+def task_of_text(text: str, more: WritesMore | None) -> VariantTask:
     """The variant of a text; InputError where the folder of all variants is not there."""
     told = json.loads(text)
     folder = Path(told["folder"])
@@ -367,7 +367,7 @@ def task_of_text(text: str, more: WritesMore | None) -> Task:
         what = _("the folder of the results is not there")
         raise InputError(str(folder.parent), what, _("name a folder that all workers reach by the same path"))
     variant, spelling = Variant(**told["variant"]), TableSpelling(**told["spelling"])
-    return Task(told["topology"], variant, folder, told["figures"], more, spelling, told["compute"])
+    return VariantTask(told["topology"], variant, folder, told["figures"], more, spelling, told["compute"])
 
 
 def row_of_text(text: str, more: WritesMore | None = None) -> dict[str, Any]:

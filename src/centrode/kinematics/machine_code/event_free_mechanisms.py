@@ -258,10 +258,10 @@ class EventScreening:
     @cached_property
     def closure(self) -> ClosureConditions | None:
         """Closed forms that say whether groups close all along the cells of the mesh, where there are any."""
-        return ClosureConditions.of(self.traced, *self.covered, self.names)
+        return ClosureConditions.of(self.traced, *self.covered_range, self.names)
 
     @property
-    def covered(self) -> tuple[float, float]:
+    def covered_range(self) -> tuple[float, float]:
         """Ends of the range that the cells of the mesh cover: half a step beyond the first and the last node."""
         beyond = 0.5 * self._path.step
         return float(self.mesh[0] - beyond), float(self.mesh[-1] + beyond)
@@ -309,7 +309,7 @@ class EventScreening:
         path = self._path
         if path.by_time or self.traced.steps or len(self.mesh) < 2 * WIDE:
             return None
-        low, high = self.covered
+        low, high = self.covered_range
         count = int(np.ceil((high - low) / (WIDE * path.step)))
         half = float(0.5 * (high - low) / count)
         bends = self.traced.bent.guards(half)
