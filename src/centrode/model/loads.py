@@ -647,11 +647,11 @@ class SliderFriction(Load):
 
     kind: Literal["friction"]
     guide: Name
+    surface_speed: Annotated[float, quantity("speed")] = 0.0
     coefficient: Annotated[float, quantity("ratio", not_negative)]
     static_coefficient: Annotated[float | None, _resistance("ratio")] = None
     length: PositiveLength | None = None
     height: PositiveLength | None = None
-    surface_speed: Annotated[float, quantity("speed")] = 0.0
 
     @property
     def greatest_coefficient(self) -> float:
