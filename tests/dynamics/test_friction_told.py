@@ -233,12 +233,10 @@ def test_what_knows_no_reactions_refuses() -> None:
     machine = ct.Mechanism(
         **{**SLIDER, "loads": [PUSH, guide()], "machine": {"mean_speed": 2.0, "fluctuation": 0.1}},
     )
-    simulated = ct.Simulation(driving="3", duration=1.0)
     for compute in (
         ct.reduce,
         ct.steady_motion,
         ct.flywheel,
-        lambda m: ct.simulate(m, simulated),
         lambda m: ct.force_polygons(m, at=1.0),
     ):
         with pytest.raises(ct.NotComputedYet, match="needs the reactions; compute the reactions"):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from centrode.locale import _
 from centrode.model.checks import link_known, two_known_points, unknown_name_problems
 from centrode.model.contacts import Clamp, MeasuredPart, Stop
-from centrode.model.loads import GuideFriction, HingeFriction
+from centrode.model.loads import CoefficientFriction, GuideFriction, HingeFriction
 from centrode.model.reading import Place, Problem, nearest, value_text
 
 if TYPE_CHECKING:
@@ -16,10 +16,12 @@ if TYPE_CHECKING:
 
 
 def needs_events(mechanism: Description) -> bool:
-    """Whether a description has what makes events: stops, clamps, conditions, belts, or friction that sticks more."""
+    """Whether a description has what makes events: stops, clamps, conditions, belts, some frictions."""
     if mechanism.stops or mechanism.clamps or mechanism.events:
         return True
     if mechanism.motors or mechanism.controllers:
+        return True
+    if any(isinstance(load, CoefficientFriction) for load in mechanism.loads):
         return True
     dry = (load for load in mechanism.loads if isinstance(load, HingeFriction | GuideFriction))
     return any(load.static is not None or load.surface_speed for load in dry)

@@ -60,8 +60,14 @@ KINDS_OF_LOADS: Mapping[type, Mapping[str, str]] = {
         "viscous": "damping",
         "quadratic": "quadratic damping",
     },
-    BearingFriction: {"coefficient": "ratio", "radius": "length"},
-    SliderFriction: {"coefficient": "ratio", "length": "length", "height": "length"},
+    BearingFriction: {"coefficient": "ratio", "static_coefficient": "ratio", "radius": "length"},
+    SliderFriction: {
+        "coefficient": "ratio",
+        "static_coefficient": "ratio",
+        "surface_speed": "speed",
+        "length": "length",
+        "height": "length",
+    },
 }
 """Numbers of each load and the kind of each; a force in a point has the components of its vector."""
 

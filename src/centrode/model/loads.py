@@ -49,6 +49,7 @@ FRICTION_SIZES = ("value", "viscous", "quadratic", "coefficient")
 _OF_DRY, _OF_BELT = ("static",), ("surface_speed",)
 # what friction by a coefficient has besides
 _OF_HINGE, _OF_SLIDER = ("radius", "fit", "pin"), ("length", "height")
+_OF_COEFFICIENT = ("static_coefficient",)
 # a force in a point has a vector, one along a guide a value or a table
 _IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
 # what says how a table is meant
@@ -78,7 +79,17 @@ _KEYS_OF: Mapping[str, LoadKeys] = {
     "friction": LoadKeys(
         ("link", "guide", "point"),
         (),
-        (*FRICTION_SIZES, *_OF_DRY, *_OF_BELT, "form", "relative_to", "axis", *_OF_HINGE, *_OF_SLIDER),
+        (
+            *FRICTION_SIZES,
+            *_OF_COEFFICIENT,
+            *_OF_DRY,
+            *_OF_BELT,
+            "form",
+            "relative_to",
+            "axis",
+            *_OF_HINGE,
+            *_OF_SLIDER,
+        ),
     ),
 }
 
@@ -155,8 +166,8 @@ def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) ->
         if len(amounts) > 1:
             what = _("{names} are given together").format(names=", ".join(amounts))
             return [Problem(what, _("keep the coefficient, or the others"))]
-        return _of_coefficient(present, said)
-    wrong = [key for key in ("point", *_OF_HINGE, *_OF_SLIDER) if key in said]
+        return _of_static_coefficient(given) or _of_coefficient(present, said)
+    wrong = [key for key in ("point", *_OF_COEFFICIENT, *_OF_HINGE, *_OF_SLIDER) if key in said]
     if wrong:
         what = _("{key} is used with Coulomb friction only")
         repair = _("give coefficient in place of {keys}").format(keys=", ".join(amounts))
@@ -173,13 +184,25 @@ def _of_dry(given: Mapping[str, Any], present: set[str]) -> list[Problem]:
         return [
             Problem(_("static is used with the value of dry friction only"), _("give value, or remove it"))
         ]
-    if "surface_speed" in present and ("guide" not in present or "coefficient" in present):
-        what = _("surface_speed is used with friction of a given size in a guide only")
-        return [Problem(what, _("remove it, or give guide and value"))]
+    if "surface_speed" in present and "guide" not in present:
+        what = _("surface_speed is used with friction in a guide only")
+        return [Problem(what, _("remove it, or give guide"))]
     kinetic, static = given.get("value"), given.get("static")
     numbers = [x for x in (kinetic, static) if isinstance(x, int | float) and not isinstance(x, bool)]
     if len(numbers) == 2 and numbers[1] < numbers[0]:
         what = _("static ({static:.9g}) is at least the value ({value:.9g}): what sticks holds more")
+        return [Problem(what.format(static=static, value=kinetic), _("exchange or correct them"))]
+    return []
+
+
+def _of_static_coefficient(given: Mapping[str, Any]) -> list[Problem]:
+    """What sticks holds at least as much as what slips rubs."""
+    kinetic, static = given.get("coefficient"), given.get("static_coefficient")
+    numbers = [x for x in (kinetic, static) if isinstance(x, int | float) and not isinstance(x, bool)]
+    if len(numbers) == 2 and numbers[1] < numbers[0]:
+        what = _(
+            "static_coefficient ({static:.9g}) is at least the coefficient ({value:.9g}): what sticks holds more"
+        )
         return [Problem(what.format(static=static, value=kinetic), _("exchange or correct them"))]
     return []
 
@@ -247,6 +270,7 @@ _KEYS = (
         "static",
         "surface_speed",
         "coefficient",
+        "static_coefficient",
         "radius",
         "fit",
         "pin",
@@ -589,15 +613,23 @@ class BearingFriction(Load):
         Which link rubs; all but the one with the pin if left out.
     radius, fit, pin : float [m], "clearance", "new" or "worn-in", the name of a link
         Of the pin of the hinge; how its bearings fit; the link that the pin is fixed in.
+    static_coefficient : float or None
+        Of what sticks in a simulation; `coefficient` if left out.
     """
 
     kind: Literal["friction"]
     point: Name
     link: Name | None = None
     coefficient: Annotated[float, quantity("ratio", not_negative)]
+    static_coefficient: Annotated[float | None, _resistance("ratio")] = None
     radius: PositiveLength
     fit: Annotated[Fit, choice(*FITS)] = CLEARANCE
     pin: Name | None = None
+
+    @property
+    def greatest_coefficient(self) -> float:
+        """Coefficient of what sticks."""
+        return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
 
 class SliderFriction(Load):
@@ -605,15 +637,26 @@ class SliderFriction(Load):
 
     Attributes
     ----------
+    static_coefficient : float or None
+        Of what sticks in a simulation; `coefficient` if left out.
+    surface_speed : float [m/s]
+        Of the belt against which it rubs, along the guide.
     length, height : float [m]
         Of the slider, along and across; by them it tilts, and friction has an arm.
     """
 
     kind: Literal["friction"]
     guide: Name
+    surface_speed: Annotated[float, quantity("speed")] = 0.0
     coefficient: Annotated[float, quantity("ratio", not_negative)]
+    static_coefficient: Annotated[float | None, _resistance("ratio")] = None
     length: PositiveLength | None = None
     height: PositiveLength | None = None
+
+    @property
+    def greatest_coefficient(self) -> float:
+        """Coefficient of what sticks."""
+        return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
 
 TurningLoad: TypeAlias = Torque | HingeSpring | HingeDamper | HingeFriction

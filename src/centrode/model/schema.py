@@ -380,6 +380,7 @@ PROPERTIES: dict[type[DescriptionPart], Schema] = {
         "static": AMOUNT,
         "surface_speed": quantity_schema("speed"),
         "coefficient": quantity_schema("ratio"),
+        "static_coefficient": quantity_schema("ratio"),
         "radius": above_zero("length"),
         "fit": {"enum": list(FITS)},
         "pin": NAME,

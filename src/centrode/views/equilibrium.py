@@ -110,7 +110,9 @@ def _facts(results: EquilibriumResults) -> Iterator[Fact]:
     yield Fact(Sentence("equilibria"), Number(count, digits="d"))
     for k in range(min(count, SHOWN)):
         label = Sentence("equilibrium {number}", number=Number(k + 1, digits="d"))
-        yield Fact(label, Joined((place_text(found, k), _stability_text(found, k)), "; "))
+        yield Fact(
+            label, Joined((place_text(found, k), _stability_text(found, k), *_resting_texts(found, k)), "; ")
+        )
     if count > SHOWN:
         more = Number(count - SHOWN, digits="d")
         yield Fact(NOTHING, Sentence("and {more} more, which the files have", more=more))
@@ -130,6 +132,18 @@ def _stability_text(found: xr.Dataset, k: int) -> Text:
         slowest = Number(float(np.min(oscillating)) / tau, "Hz")
         return Sentence("{stability}, slowest oscillation {frequency}", stability=text, frequency=slowest)
     return text
+
+
+def _resting_texts(found: xr.Dataset, k: int) -> Iterator[Text]:
+    """Stops on which an equilibrium rests, with their forces."""
+    if "restraint_force" not in found:
+        return
+    units = coordinate_units(found["restraint_force"])
+    forces = found["restraint_force"].values[k]
+    for name, force, unit in zip(found["contact"].values, forces, units, strict=True):
+        if force:
+            size = Number(abs(float(force)), unit, ".6g")
+            yield Sentence("rests on {stop} with {force}", stop=Name(str(name)), force=size)
 
 
 def _held_facts(results: EquilibriumResults) -> Iterator[Fact]:
@@ -208,6 +222,7 @@ def _table(found: xr.Dataset) -> Table:
             head=Sentence("stability"),
         ),
         *_values_of(found, "holding_moment", "drive", "holding_"),
+        *_values_of(found, "restraint_force", "contact", "force_"),
         *_values_of(found, "friction_reach", "coordinate", "friction_reach_"),
     ]
     for k in range(found.sizes["root"]):

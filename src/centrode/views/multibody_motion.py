@@ -280,6 +280,7 @@ def _ending(run: xr.Dataset) -> Text:
         "event": Sentence("at an event, after {time}", time=time),
         "change point": Sentence("at a change point that it does not pass, after {time}", time=time),
         "blow-up": Sentence("beyond all bounds, after {time}", time=time),
+        "ambiguous friction": Sentence("where friction has no or several solutions, after {time}", time=time),
         "interrupted": Sentence("interrupted at {time}", time=time),
     }
     return known.get(str(run.attrs["ended"]), Sentence("broken off after {time}", time=time))

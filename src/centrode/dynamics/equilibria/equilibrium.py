@@ -22,10 +22,15 @@ from centrode.dynamics.equilibria.critical_values import (
     branches,
     number_range,
 )
-from centrode.dynamics.equilibria.equilibrium_search import Equilibria, find_equilibria
+from centrode.dynamics.equilibria.equilibrium_search import (
+    Equilibria,
+    find_equilibria,
+    no_equilibrium,
+)
 from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import posed_motion
+from centrode.dynamics.equilibria.resting_equilibria import RestingEquilibrium, resting_equilibria
 from centrode.dynamics.equilibria.small_motions import (
     STABILITIES,
     UNSTABLE,
@@ -89,9 +94,9 @@ def equilibrium(
     -------
     Dataset
         Of every `equilibrium`, counted from 1, stable ones first and near ones before those farther from the initial
-        position: positions, drives, potential energy, stability, eigenvalues of the linearised equations by `root`; the
-        intervals in which dry friction holds (docs: equilibria). With `vary` the `branch_...` of equilibria and the
-        `critical_...` values.
+        position, behind them those that rest on stops, with their `restraint_force`: positions, drives, potential
+        energy, stability, eigenvalues of the linearised equations by `root`; the intervals in which dry friction holds
+        (docs: equilibria). With `vary` the `branch_...` of equilibria and the `critical_...` values.
 
     Raises
     ------
@@ -119,10 +124,13 @@ def equilibrium(
         _range_of(description, vary)
     loaded = loaded_mechanism(description.with_drives_held(), held)
     found = stable_first(find_equilibria(loaded))
+    resting = resting_equilibria(loaded, found)
+    if not len(found.places) and not resting:
+        raise no_equilibrium(found.starts)
     if progress is not None:
         progress(0.5)
     followed = () if vary is None else _branches(description, held, found, vary, progress)
-    return _dataset(description, loaded, found, held, vary, followed)
+    return _dataset(description, loaded, found, resting, held, vary, followed)
 
 
 def stable_first(found: Equilibria) -> Equilibria:
@@ -233,18 +241,24 @@ def _dataset(
     description: Mechanism,
     loaded: LoadedMechanism,
     found: Equilibria,
+    resting: Sequence[RestingEquilibrium],
     held: Mapping[str, float],
     vary: Mapping[str, Sequence[Value]] | None,
     followed: Sequence[EquilibriumBranch],
 ) -> xr.Dataset:
-    places = found.places
-    motions = small_motions(loaded, places)
+    places = np.concatenate([found.places, *(one.place[None] for one in resting)])
+    motions = (*small_motions(loaded, found.places), *(one.motions for one in resting))
     poses = posed_motion(loaded, np.zeros(len(places)), places)
     variables = pose_variables(poses, "equilibrium")
     variables |= drive_variables(description, loaded, places, "equilibrium")
     variables |= _stability(motions)
-    variables |= _friction(loaded, found)
+    variables |= _friction(loaded, found, len(resting))
     coordinates: dict[str, Any] = {"equilibrium": np.arange(1, len(places) + 1)}
+    if resting:
+        _correct_holding(variables, description, loaded, resting)
+        variables["restraint_force"] = _stop_forces(description, len(found.places), resting)
+        labels = [stop.label for stop in description.stops]
+        coordinates["contact"] = np.array(labels, dtype=object)
     coordinates |= label_values(poses, description)
     facts: dict[str, Any] = {
         "topic": "equilibrium",
@@ -340,7 +354,34 @@ def _stability(motions: Sequence[SmallMotions]) -> dict[str, Any]:
     }
 
 
-def _friction(loaded: LoadedMechanism, found: Equilibria) -> dict[str, Any]:
+def _correct_holding(
+    variables: dict[str, Any],
+    description: Mechanism,
+    loaded: LoadedMechanism,
+    resting: Sequence[RestingEquilibrium],
+) -> None:
+    """Put what holds the drives where stops bear a part of the loads."""
+    if "holding_moment" not in variables:
+        return
+    values, own = variables["holding_moment"][1], [drive.id for drive in description.drives]
+    for row, one in zip(values[len(values) - len(resting) :], resting, strict=True):
+        for kept, force in zip(loaded.equations.kept, one.holding, strict=True):
+            row[own.index(kept.name)] = -description.motion_parameter.drive(kept.name).sense * force
+
+
+def _stop_forces(description: Mechanism, free: int, resting: Sequence[RestingEquilibrium]) -> Any:
+    """Forces of all stops along their coordinates (equilibrium, contact); zero of what is open."""
+    stops = description.stops
+    forces = np.zeros((free + len(resting), len(stops)))
+    for row, one in zip(forces[free:], resting, strict=True):
+        row[:] = [one.forces.get(stop.label, 0.0) for stop in stops]
+    found = vocabulary_variable("restraint_force", ("equilibrium", "contact"), forces)
+    units = ["N" if stop.link is None else "N m" for stop in stops]
+    found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
+    return found
+
+
+def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[str, Any]:
     """Where dry friction holds: intervals with one degree of freedom, bounds about each equilibrium with more."""
     if not loaded.frictions:
         return {}
@@ -354,6 +395,8 @@ def _friction(loaded: LoadedMechanism, found: Equilibria) -> dict[str, Any]:
 
     if found.curve is None:
         reach = friction_reach(loaded, found.places)
+        # on a stop friction has no bounds of its own
+        reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])
         return {"friction_reach": named_number("friction_reach", ("equilibrium", "coordinate"), reach)}
     bands = friction_bands(found)
     ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)

@@ -76,7 +76,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     InputError
         Nothing can move, or nothing acts.
     MotionError
-        No equilibrium is found.
+        No equilibrium is found, and there is no stop on which one could rest.
     """
     if not loaded.mobility:
         what = _("nothing can move: all drives are held, or it has no degree of freedom")
@@ -89,14 +89,17 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     if curve is None:
         found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
     places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
-    if not len(places):
-        what = _("no equilibrium is found from {count} positions")
-        raise MotionError(
-            "", what.format(count=len(starts) if curve is None else len(curve.places)),
-            _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)"),
-        )  # fmt: skip
+    if not len(places) and not loaded.mechanism.stops:
+        raise no_equilibrium(len(starts) if curve is None else len(curve.places))
     count = len(curve.places) if curve is not None else len(starts)
     return Equilibria(loaded, places, count, curve)
+
+
+def no_equilibrium(count: int) -> MotionError:
+    """The error of a mechanism that stays nowhere, from so many positions."""
+    what = _("no equilibrium is found from {count} positions")
+    repair = _("let springs, weights or friction hold it, or hold a drive: --hold DRIVE=VALUE")
+    return MotionError("", what.format(count=count), repair)
 
 
 def walked_positions(loaded: LoadedMechanism) -> Array:
@@ -227,21 +230,29 @@ def _moved_positions(
     return ahead, np.where(lost, np.inf, longest)
 
 
+def stop_values(loaded: LoadedMechanism, places: Array) -> Array:
+    """Coordinates of all stops (n, stops) [rad or m] at positions (n, coordinates)."""
+    stops = loaded.mechanism.stops
+    tree = loaded.equations.tree
+    jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
+    state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
+    found = [coordinate_of_part(loaded.mechanism, stop).value(state) for stop in stops]
+    return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(stops), len(places)).T
+
+
 def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
     """Those of some positions (n, coordinates) that no stop forbids."""
-    kept = np.ones(len(places), dtype=bool)
-    for stop in loaded.mechanism.stops:
-        coordinate = coordinate_of_part(loaded.mechanism, stop)
-        for k, place in enumerate(places):
-            jets = [Jet((x, 0.0, 0.0)) for x in place]
-            state = loaded.equations.state(
-                ARRAYS, loaded.equations.tree.values(ARRAYS, list(place)), jets, 0.0
-            )
-            value = float(coordinate.value(state))
-            low = -np.inf if stop.least is None else float(stop.least)
-            high = np.inf if stop.most is None else float(stop.most)
-            kept[k] &= low <= value <= high
-    return places[kept]
+    if not loaded.mechanism.stops or not len(places):
+        return places
+    low, high = (
+        np.array([away if bound is None else float(bound) for bound in bounds])
+        for away, bounds in (
+            (-np.inf, [stop.least for stop in loaded.mechanism.stops]),
+            (np.inf, [stop.most for stop in loaded.mechanism.stops]),
+        )
+    )
+    values = stop_values(loaded, places)
+    return places[np.all((low <= values) & (values <= high), axis=1)]
 
 
 def _distinct(loaded: LoadedMechanism, places: Array) -> Array:

@@ -23,6 +23,7 @@ from centrode.dynamics.equilibria.equilibrium import (
 from centrode.dynamics.equilibria.equilibrium_search import (
     approached_positions,
     find_equilibria,
+    no_equilibrium,
     settled_equilibria,
 )
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
@@ -134,6 +135,10 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         places = stable_first(find_equilibria(loaded)).places
         if not 1 <= equilibrium <= len(places):
             what = _("there are {count} equilibria, and number {number} is requested")
+            if loaded.mechanism.stops:
+                what = _(
+                    "there are {count} equilibria that rest on no stop, and number {number} is requested"
+                )
             raise InputError(
                 "equilibrium",
                 what.format(count=len(places), number=equilibrium),
@@ -146,7 +151,10 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
         if np.isfinite(found[0, 0]):
             return np.asarray(found[0])
     # what says why there is none
-    return np.asarray(stable_first(find_equilibria(loaded)).places[0])
+    all_found = stable_first(find_equilibria(loaded))
+    if not len(all_found.places):
+        raise no_equilibrium(all_found.starts)
+    return np.asarray(all_found.places[0])
 
 
 def _check_masses(loaded: LoadedMechanism, motions: SmallMotions) -> None:

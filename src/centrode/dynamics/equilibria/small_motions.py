@@ -55,6 +55,8 @@ class SmallMotions:
     @cached_property
     def moves_mass(self) -> bool:
         """Whether every free direction moves a mass: without that there are no frequencies."""
+        if not len(self.mass):
+            return False
         sizes = np.linalg.eigvalsh(self.mass)
         return bool(sizes[0] > WITHOUT_MASS * max(float(sizes[-1]), 1e-300))
 
@@ -109,7 +111,9 @@ class SmallMotions:
 
     @cached_property
     def stability(self) -> str:
-        """One of `STABILITIES`."""
+        """One of `STABILITIES`; stable where nothing can move."""
+        if not len(self.mass):
+            return STABLE
         if not self.moves_mass:
             # what moves slowly against friction of any kind goes down the stiffness
             sizes = np.linalg.eigvals(self.stiffness).real

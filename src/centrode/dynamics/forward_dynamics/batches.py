@@ -21,7 +21,15 @@ from centrode.dynamics.forward_dynamics.initial_position import OPEN
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
 from centrode.dynamics.forward_dynamics.model_numbers import map_equations
 from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS
-from centrode.dynamics.forward_dynamics.motion_steps import BLOW_UP, CHANGE_POINT, DURATION, STEP_SIZE
+from centrode.dynamics.forward_dynamics.motion_steps import (
+    AMBIGUOUS,
+    BLOW_UP,
+    CHANGE_POINT,
+    DURATION,
+    STEP_SIZE,
+)
+from centrode.dynamics.forward_dynamics.pressed_contacts import pressed_contacts_of
+from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import loads_of
 from centrode.dynamics.masses import masses_of
 from centrode.kinematics.path import DrivenBy
@@ -40,7 +48,7 @@ NEWTON_STEPS = 8
 ATTEMPTS = 10_000_000
 """Bound of what a lane may try."""
 NOT_ASSEMBLED = "not assembled"
-ENDS = (DURATION, CHANGE_POINT, BLOW_UP, STEP_SIZE, NOT_ASSEMBLED)
+ENDS = (DURATION, CHANGE_POINT, BLOW_UP, STEP_SIZE, NOT_ASSEMBLED, AMBIGUOUS)
 """How a lane may end, by number."""
 
 
@@ -78,9 +86,10 @@ def equations_of_many(free: FreeMotion, numbers: Mapping[str, npt.ArrayLike]) ->
     # how wheels mesh is that of the description
     gearing = dimensions.gearing.with_phases(equations.numbers.gearing.phase)
     masses = masses_of(mechanism, varied, ARRAYS)
-    described = loads_of(mechanism, masses, varied)
-    loads: tuple[LoadAlong, ...] = free_loads_of(mechanism, described, ())
-    contacts = contacts_of(mechanism, dry_frictions_of(mechanism, described))
+    given = without_friction(mechanism)
+    described = loads_of(given, masses, varied)
+    loads: tuple[LoadAlong, ...] = free_loads_of(given, described, ())
+    contacts = contacts_of(mechanism, (*dry_frictions_of(given, described), *pressed_contacts_of(mechanism)))
     # forces of drives are no numbers of the description
     loads += equations.loads[len(loads) :]
     return replace(

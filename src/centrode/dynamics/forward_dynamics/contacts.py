@@ -13,8 +13,10 @@ from math import hypot
 from typing import Any, TypeAlias
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
+from centrode.dynamics.forward_dynamics.joint_openings import JointOpening
 from centrode.dynamics.load_coordinates import Component, Coordinate, Distance, Slide, Turn
 from centrode.dynamics.loads import Constant, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
+from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.model.contacts import MEASURED, MeasuredPart
@@ -28,6 +30,45 @@ STOP, FRICTION, CLAMP, COMPLIANT = "stop", "friction", "clamp", "compliant stop"
 """Kinds of contacts."""
 AT_LEAST, OPEN, AT_MOST = -1.0, 0.0, 1.0
 """Modes of a stop: closed at the bound below, open, closed at the bound above; what sticks or holds has mode 1."""
+
+
+@dataclass(frozen=True)
+class JointPressing:
+    """How the reaction of a joint makes the size of friction by a coefficient.
+
+    Attributes
+    ----------
+    openings : what the joint exerts: both components of the force of a pin, or the normal force of a guide and the
+        moment on its slider; of what cannot tilt the normal force alone
+    kinetic, static : coefficients, in hinges times the radius of the pin and the factor of the fit [1 or m]
+    length, height : of a slider along and across its guide [m]; 0 where they do not matter
+    """
+
+    openings: tuple[JointOpening, ...]
+    kinetic: Number
+    static: Number
+    length: Number = 0.0
+    height: Number = 0.0
+
+    @property
+    def is_round(self) -> bool:
+        """Whether the size goes with the length of a force, as in hinges; else with the greater of two numbers."""
+        return len(self.openings) == 2 and self.openings[0].way == "x"
+
+    def parts(self, reaction: Sequence[Number], sense: Number, coefficient: Number) -> tuple[Number, Number]:
+        """The two numbers [N] whose length, or whose greater one, presses, by the reaction and the sense of the motion.
+
+        The ends of a slider press with N/2 -+ M/l, of which the moment of friction on its faces is a part.
+        """
+        if len(reaction) == 1:
+            return reaction[0], 0.0
+        first, second = reaction
+        if self.is_round:
+            return first, second
+        tilt = second * (2.0 / self.length)
+        if is_none(self.height):
+            return first, tilt
+        return first, tilt + (sense * coefficient * self.height / self.length) * first
 
 
 @dataclass(frozen=True)
@@ -47,6 +88,7 @@ class Contact:
     static : the greatest force by which it holds what sticks; None where it is the kinetic one
     drift : speed of the surface along the coordinate [rad/s or m/s]
     until : when a clamp lets go: a time [s], the name of an event, or None
+    pressing : of friction by a coefficient, in place of a kinetic law; None of all else
     """
 
     kind: str
@@ -62,9 +104,10 @@ class Contact:
     static: Number | None = None
     drift: Number = 0.0
     until: float | str | None = None
+    pressing: JointPressing | None = None
 
     def forces(self, now: Situation) -> tuple[Number, Number]:
-        """Force along the coordinate while it slips forwards, and while it slips backwards."""
+        """Force along the coordinate while it slips forwards, and while it slips backwards; by a law of its own."""
         assert self.kinetic is not None
         forwards = self.kinetic(now)
         if self.backwards is None:
@@ -102,11 +145,14 @@ class ContactMode:
     active : of a stop -1, 0 or 1; of friction and clamps 1 while they hold
     sense : of friction the sense in which it slips; 0 while it sticks
     held : value of the coordinate less the drift's way at which it holds [rad or m]
+    first, second : of friction by a coefficient the weights of the two numbers of its reaction in what presses
     """
 
     active: Number
     sense: Number
     held: Number
+    first: Number = 0.0
+    second: Number = 0.0
 
 
 FREE = ContactMode(0.0, 0.0, 0.0)
@@ -227,3 +273,8 @@ class SmoothFriction:
 def row_numbers(contacts: Sequence[Contact]) -> tuple[int, ...]:
     """Numbers of the contacts that have a row, in the order of their rows."""
     return tuple(k for k, contact in enumerate(contacts) if contact.has_row)
+
+
+def pressed_numbers(contacts: Sequence[Contact]) -> tuple[int, ...]:
+    """Numbers of the contacts whose friction goes with a reaction."""
+    return tuple(k for k, contact in enumerate(contacts) if contact.pressing is not None)

@@ -25,6 +25,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Condition,
     Contact,
     ContactMode,
+    pressed_numbers,
     row_numbers,
 )
 from centrode.dynamics.forward_dynamics.controllers import Control, outputs_of, states_of
@@ -36,13 +37,30 @@ from centrode.dynamics.forward_dynamics.elimination import (
     is_zero,
     times,
 )
+from centrode.dynamics.forward_dynamics.joint_openings import (
+    JointOpening,
+    OpenedState,
+    Opening,
+    closure_rows,
+    host_positions,
+    opened_positions,
+    step_of,
+    tooth_slope,
+)
 from centrode.dynamics.forward_dynamics.joint_state import JointState
+from centrode.dynamics.forward_dynamics.reaction_friction import (
+    Pair,
+    PressedJoint,
+    friction_forces,
+    pressing_force,
+)
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointValues,
     SpanningTree,
     jets_along,
     rotor_jets,
 )
+from centrode.dynamics.kinetostatics.equations import Teeth
 from centrode.dynamics.load_coordinates import Coordinate, bodies_of
 from centrode.dynamics.loads import LoadTerm, Situation
 from centrode.dynamics.masses import coordinates_of
@@ -51,7 +69,7 @@ from centrode.kinematics.path import DrivenBy
 from centrode.laws import Law
 from centrode.model.mechanism import Drive
 from centrode.numerics.jets import Jet, JetFunctions
-from centrode.structure.constraints import Constraint, Entity, Positions
+from centrode.structure.constraints import Constraint, Entity, GearRatio, Positions
 from centrode.structure.dimensions import Dimensions
 
 Number: TypeAlias = Any
@@ -137,6 +155,8 @@ class Terms:
     measures : of every contact its coordinate, its speed and the force of its mode along it
     conditions : of every user's event what passes zero
     outputs, output_powers, state_rates : of controllers
+    modes : of every contact
+    openings : number of a contact with friction by a coefficient -> those of its joint
 
     Rows, values, speeds and bias of contacts follow those of the closures, where modes are given.
     """
@@ -156,6 +176,8 @@ class Terms:
     outputs: Sequence[Number] = ()
     output_powers: Sequence[Number] = ()
     state_rates: Sequence[Number] = ()
+    modes: Sequence[ContactMode] = ()
+    openings: Mapping[int, Sequence[Opening]] = field(default_factory=dict)
 
     def without_contacts(self, equations: int) -> Terms:
         """The terms with the rows of the closures alone."""
@@ -166,6 +188,29 @@ class Terms:
             speeds=self.speeds[:equations],
             bias=self.bias[:equations],
         )
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Accelerations with the forces that belong to them.
+
+    Attributes
+    ----------
+    accelerations, forces : by coordinates and by equations
+    measures : of contacts, friction by coefficients included
+    joints : number of a contact with such friction -> its joint
+    reactions : number of such a contact -> reaction of its joint [N or N m]
+    weights : number of such a contact -> weights of what presses
+    unsettled : what is left of Newton's method for them [rad^2]
+    """
+
+    accelerations: Vector
+    forces: Vector
+    measures: Sequence[ContactMeasure]
+    joints: Mapping[int, PressedJoint] = field(default_factory=dict)
+    reactions: Mapping[int, tuple[Number, ...]] = field(default_factory=dict)
+    weights: Mapping[int, Pair] = field(default_factory=dict)
+    unsettled: Number = 0.0
 
 
 @dataclass(frozen=True)
@@ -257,7 +302,8 @@ class EquationsOfMotion:
         state = self._state(jets, in_time, time, 2)
         columns = [self._column(jets, values, plain, k, time) for k in range(self.size)]
         mass, force = self._inertia(state, columns)
-        powers = self._add_loads(state, columns, force)
+        strengths = [load.term.strength(state) for load in self.loads]
+        powers = self._add_loads(state, columns, force, strengths)
         outputs, output_powers, state_rates = self._add_controls(m, state, columns, force, states)
         rows, residuals = self._closures(jets, in_time, columns)
         gaps = [jet.coefficients[0] for jet in residuals]
@@ -278,6 +324,18 @@ class EquationsOfMotion:
                 gaps.append(own.value - mode.held - times(contact.drift, time))
                 drifts.append(own.speed - contact.drift)
                 bias.append(slope.derivative(1))
+        acting = [(load.term.coordinate, x) for load, x in zip(self.loads, strengths, strict=True)]
+        acting += [
+            (control.drives, output)
+            for control, output in zip(self.controls, outputs, strict=True)
+            if control.drives is not None
+        ]
+        openings = {
+            number: [
+                self._opening(jets, values, plain, state, one, columns, acting, measures) for one in ways
+            ]
+            for number, ways in (self._joint_openings.items() if modes is not None else ())
+        }
         return Terms(
             self.size,
             mass,
@@ -294,7 +352,90 @@ class EquationsOfMotion:
             outputs,
             output_powers,
             state_rates,
+            modes or (),
+            openings,
         )
+
+    @cached_property
+    def _joint_openings(self) -> dict[int, tuple[JointOpening, ...]]:
+        """Number of a contact with friction by a coefficient -> ways in which its joint is opened."""
+        pressed = [(k, self.contacts[k].pressing) for k in pressed_numbers(self.contacts)]
+        return {k: pressing.openings for k, pressing in pressed if pressing is not None}
+
+    def _opening(
+        self,
+        jets: JetFunctions,
+        values: JointValues,
+        plain: Positions,
+        state: JointState,
+        opening: JointOpening,
+        columns: Sequence[JointState],
+        acting: Sequence[tuple[Coordinate, Number]],
+        measures: Sequence[ContactMeasure],
+    ) -> Opening:
+        """What an opening of a joint asks for: the row that it would have among the equations of motion."""
+        number = step_of(self.tree, opening.constraint)
+        if number is None:
+            return Opening({}, 0.0, closure_rows(opening, self.constraints), {})
+        at = opened_positions(self.tree, jets, self.numbers, values, plain, opening, number)
+        opened = self._opened_state(jets, at, state.time)
+        mass, force = self._opened_inertia(state, opened, columns)
+        for coordinate, strength in acting:
+            force = _plus(force, times(strength, coordinate.slope(opened).value))
+        rows: Vector = {}
+        for constraint in self.constraints:
+            hosted = host_positions(self.tree.mechanism, self.numbers, at, constraint)
+            first = sum(one.size for one in self.constraints[: self.constraints.index(constraint)])
+            if isinstance(constraint, GearRatio) and constraint.gear in self._teeth.axes:
+                add_term(rows, first, tooth_slope(self._teeth, self.numbers, plain, at, constraint))
+                continue
+            for k, x in enumerate(constraint.residual(jets, self.numbers, hosted)):
+                add_term(rows, first + k, x.coefficients[1] if isinstance(x, Jet) else 0.0)
+        along: Vector = {}
+        behind = {contact: row for row, contact in self.contact_rows}
+        for k, (contact, one) in enumerate(zip(self.contacts, measures, strict=True)):
+            slope = contact.coordinate.slope(opened).value
+            add_term(along, k, slope)
+            force = _plus(force, times(slope, one.strength))
+            if k in behind:
+                add_term(rows, behind[k], slope)
+        return Opening(mass, force, rows, along)
+
+    @cached_property
+    def _teeth(self) -> Teeth:
+        return Teeth.of(self.tree.mechanism)
+
+    def _opened_inertia(
+        self, state: JointState, opened: JointState, columns: Sequence[JointState]
+    ) -> tuple[Vector, Number]:
+        """Masses along an opening by coordinates, and the force of the inertia that the motion itself asks for."""
+        mass: Vector = {}
+        force: Number = 0.0
+        parts = [
+            (coordinates_of(state, body), coordinates_of(opened, body), body, depends)
+            for body, depends in self._centres
+        ]
+        for along, across, body, depends in parts:
+            slopes = {k: coordinates_of(columns[k], body) for k in depends}
+            for number, (factor, jet) in enumerate(along):
+                own = across[number][1].coefficients[1]
+                force = _plus(force, -times(factor, times(own, times(2.0, jet.coefficients[2]))))
+                for k in sorted(slopes):
+                    add_term(mass, k, times(factor, times(own, slopes[k][number][1].coefficients[1])))
+        for shaft in self.shafts:
+            own = opened.drive(shaft.drive).coefficients[1]
+            bias = times(2.0, state.drive(shaft.drive).coefficients[2])
+            force = _plus(force, -times(shaft.inertia, times(own, bias)))
+            for k in self._reach(shaft.coordinate):
+                slope = columns[k].drive(shaft.drive).coefficients[1]
+                add_term(mass, k, times(shaft.inertia, times(own, slope)))
+        return mass, force
+
+    def _opened_state(self, jets: JetFunctions, at: Positions, time: Number) -> OpenedState:
+        return OpenedState(
+            self.tree.mechanism, _NO_LAYOUT, time, _NO_VALUE, 1.0, 0, 0.0, {}, jets,  # type: ignore[arg-type]
+            order=1, at=at, numbers=self.numbers, pivots=self.tree.pivots,
+        )  # fmt: skip
 
     def _add_controls(
         self,
@@ -335,6 +476,9 @@ class EquationsOfMotion:
         v: Number,
     ) -> ContactMeasure:
         """A contact with the force of its mode: friction that slips, or the push of a compliant stop."""
+        if contact.pressing is not None:
+            # how great it is follows from the reaction of its joint
+            return ContactMeasure(x, v, 0.0)
         if contact.kind == FRICTION:
             now = Situation(state.time, state.parameter, x, v - contact.drift, mode.sense, m)
             forwards, backwards = contact.forces(now)
@@ -416,10 +560,15 @@ class EquationsOfMotion:
                             add_term(mass, (i, j), times(factor, times(a, b)))
         return mass, force
 
-    def _add_loads(self, state: JointState, columns: Sequence[JointState], force: Vector) -> list[Number]:
+    def _add_loads(
+        self,
+        state: JointState,
+        columns: Sequence[JointState],
+        force: Vector,
+        strengths: Sequence[Number],
+    ) -> list[Number]:
         powers = []
-        for load in self.loads:
-            strength = load.term.strength(state)
+        for load, strength in zip(self.loads, strengths, strict=True):
             coordinate = load.term.coordinate
             for k in self._reach(coordinate):
                 add_term(force, k, times(coordinate.slope(columns[k]).value, strength))
@@ -502,9 +651,44 @@ class EquationsOfMotion:
     ) -> tuple[list[Number], list[Number], Flags]:
         """Accelerations, the forces of the closures (as they act along their rows), and which equations counted."""
         system = self.system(m, terms, flags, active)
+        found = self.motion(m, terms, system)
+        a = [found.accelerations.get(k, 0.0) for k in range(self.size)]
+        return a, [found.forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
+
+    def motion(self, m: Namespace, terms: Terms, system: MassSystem) -> Motion:
+        """Accelerations and forces, with friction as great as the reactions make it."""
         solution, forces = system.solve(system.force, terms.bias)
-        a = [solution.get(k, 0.0) for k in range(self.size)]
-        return a, [forces.get(i, 0.0) for i in range(len(terms.rows))], system.flags
+        if not terms.openings:
+            return Motion(solution, forces, terms.measures)
+        rows = {number: terms.rows[row] for row, number in self.contact_rows if row < len(terms.rows)}
+        still = [0.0] * len(terms.rows)
+        responses = {k: system.solve(rows[k], still) for k in terms.openings}
+        joints = {
+            k: PressedJoint(
+                self.contacts[k],
+                terms.modes[k],
+                tuple(one.reaction(solution, forces) for one in ways),
+                {i: tuple(one.response(i, *response) for one in ways) for i, response in responses.items()},
+            )
+            for k, ways in terms.openings.items()
+        }
+        sizes, reactions, weights, unsettled = friction_forces(m, joints)
+        solution, forces, measures = dict(solution), dict(forces), list(terms.measures)
+        for k, size in sizes.items():
+            moved, borne = responses[k]
+            for i, x in moved.items():
+                add_term(solution, i, times(x, size))
+            for i, x in borne.items():
+                add_term(forces, i, times(x, size))
+            contact = self.contacts[k]
+            assert contact.pressing is not None
+            kinetic = contact.pressing.kinetic
+            presses = [
+                kinetic * pressing_force(m, contact, *contact.pressing.parts(reactions[k], sense, kinetic))
+                for sense in (1.0, -1.0)
+            ]
+            measures[k] = replace(measures[k], strength=size, forwards=-presses[0], backwards=presses[1])
+        return Motion(solution, forces, measures, joints, reactions, weights, unsettled)
 
     def shift_to_close(self, terms: Terms, system: MassSystem) -> Vector:
         """Change of the coordinates by one step of Newton's method of least change in the measure of M."""

@@ -8,10 +8,11 @@ bounds. (F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan, nan
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -28,8 +29,15 @@ from centrode.dynamics.forward_dynamics.contacts import (
     STOP,
     Contact,
     ContactMode,
+    pressed_numbers,
 )
-from centrode.dynamics.forward_dynamics.equations_of_motion import IMPLIED, EquationsOfMotion
+from centrode.dynamics.forward_dynamics.elimination import Vector
+from centrode.dynamics.forward_dynamics.equations_of_motion import (
+    IMPLIED,
+    EquationsOfMotion,
+    MassSystem,
+    Terms,
+)
 from centrode.dynamics.forward_dynamics.motion_problem import (
     CONDITION,
     CONTROLS,
@@ -37,15 +45,19 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
     INDEPENDENCE,
     LIMIT,
     NEVER,
+    PRESSES,
     ROUNDING,
     TOLERANCE,
+    UNIQUE,
     Guard,
     MotionNames,
     guards_of,
     modes_of,
 )
 from centrode.dynamics.forward_dynamics.motion_steps import (
+    AMBIGUOUS,
     CLOSES,
+    CONDITION_ENDS,
     CONDITION_MET,
     IMPACT,
     LEAVES,
@@ -58,6 +70,11 @@ from centrode.dynamics.forward_dynamics.motion_steps import (
     Event,
     ImpactRecord,
     Transition,
+)
+from centrode.dynamics.forward_dynamics.pressed_modes import (
+    FrictionLimits,
+    JointPresses,
+    response_with_held,
 )
 from centrode.dynamics.load_coordinates import Turn
 from centrode.errors import InputError, MotionError
@@ -82,6 +99,10 @@ ROOT = 1e-16
 """Width [s] down to which the instant of an event is sought, as far as digits of the time go."""
 TOUCHING = 1e-10
 """A gap below this share of the greatest length is closed, a speed below this share of the usual one is none."""
+VANISHES = 0.01
+"""A reaction without friction below this share of that with it may be of either sign where both are lost."""
+TURNING = 1e-8
+"""An acceleration above this share of the usual one is none of rounding."""
 ACCUMULATED = 2e-5
 """Impacts that end within this share of the usual time are taken together."""
 SOON = 1e-3
@@ -91,6 +112,8 @@ LOOKS = 33
 HALVINGS = 60
 AT_THE_LIMIT = 1e-6
 """What holds is at its limit where its event says so and this share is not missing."""
+ROUNDS, SETTLED = 200, 1e-13
+"""Rounds in which modes and bounds of friction by coefficients settle, to this share of the greatest."""
 MOST_AT_ONCE = 100
 """Events one after the other at the same instant, beyond which none of them leads on."""
 
@@ -109,7 +132,9 @@ class ContactForces(NamedTuple):
     reactions : (kept drives, rows), impulses of kept drives by impulses along the rows
     rates : of the kept drives
     conditions : values of the user's events
+    presses : reactions of joints with friction by coefficients
     is_late : whether speeds alone are those behind an impact, and forces and accelerations still those before it
+    limits : bounds of friction by coefficients, where its forces are known
     """
 
     values: Array
@@ -123,7 +148,16 @@ class ContactForces(NamedTuple):
     reactions: Array
     rates: Array
     conditions: Array
+    presses: JointPresses
     is_late: bool = False
+    limits: Mapping[int, FrictionLimits] = MappingProxyType({})
+
+    def with_limits(self, limits: Mapping[int, FrictionLimits]) -> ContactForces:
+        """The same with bounds of friction by coefficients."""
+        forwards, backwards = self.forwards.copy(), self.backwards.copy()
+        for k, one in limits.items():
+            forwards[k], backwards[k] = one.forwards, one.backwards
+        return self._replace(forwards=forwards, backwards=backwards, limits=limits)
 
 
 def contact_function(
@@ -159,8 +193,28 @@ def contact_function(
         outputs |= {f"reaction {i} {k}": forces.get(first + k, 0.0) for k in range(len(equations.kept))}
     outputs |= {f"rate {k}": rate for k, rate in enumerate(terms.rates)}
     outputs |= {f"condition {k}": value for k, value in enumerate(terms.conditions)}
+    outputs |= _press_outputs(equations, terms, system, (moved, _forces))
     graph = Graph({name: as_node(x) for name, x in outputs.items()})
     return python_function(graph, [TIME, *problem.parameters, *problem.carried_names])
+
+
+def _press_outputs(
+    equations: EquationsOfMotion, terms: Terms, system: MassSystem, free: tuple[Vector, Vector]
+) -> dict[str, Any]:
+    """Reactions of joints with friction by coefficients, without forces of contacts and by each of these."""
+    count = equations.equations
+    still = [0.0] * count
+    responses = [
+        (number, system.solve(terms.rows[row], still)) for row, number in equations.contact_rows
+    ] if terms.openings else []  # fmt: skip
+    outputs: dict[str, Any] = {}
+    for k, ways in terms.openings.items():
+        for j in range(2):
+            own = ways[j] if j < len(ways) else None
+            outputs[f"press {k} {j}"] = 0.0 if own is None else own.reaction(*free)
+            for i, response in responses:
+                outputs[f"gain {k} {j} {i}"] = 0.0 if own is None else own.response(i, *response)
+    return outputs
 
 
 def row_of(state: Array) -> Array:
@@ -206,6 +260,7 @@ class EventWatch:
     rate : what speeds are compared with [1/s]
     events : what has happened
     transitions : where modes may have changed, the start first
+    ending : why what ends the motion does so, and the sentence that tells it
     """
 
     integration: WatchedMotion
@@ -215,6 +270,7 @@ class EventWatch:
     events: list[Event] = field(default_factory=list)
     transitions: list[Transition] = field(default_factory=list)
     _impact_now: ImpactRecord | None = None
+    ending: tuple[str, str | None] = (CONDITION_ENDS, None)
     _at_once: int = 0
     _last: float = -inf
 
@@ -235,6 +291,11 @@ class EventWatch:
         return {number: row - rows[0][0] for row, number in rows}
 
     @cached_property
+    def _pressed(self) -> tuple[int, ...]:
+        """Numbers of the contacts with friction by coefficients."""
+        return pressed_numbers(self.contacts)
+
+    @cached_property
     def _places(self) -> dict[str, int]:
         """Place of what is carried in a state."""
         return {name: HEADER + k for k, name in enumerate(self.integration.problem.carried_names)}
@@ -244,7 +305,11 @@ class EventWatch:
         """Places in a state of what tells the modes, contact by contact."""
         names = self.integration.names
         told = {"active": names.active, "sense": names.senses, "held": names.held}
-        return {what: [self._places[one] for one in of_each] for what, of_each in told.items()}
+        found = {what: [self._places[one] for one in of_each] for what, of_each in told.items()}
+        for what in ("first", "second"):
+            named = [f"{what} {k}" for k in range(len(self.contacts))]
+            found[what] = [self._places.get(name, -1) for name in named]
+        return found
 
     @cached_property
     def _work_places(self) -> list[int]:
@@ -288,10 +353,15 @@ class EventWatch:
         width = 2 + rows + size + kept
         by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
         rest = numbers[4 * count + rows * width :]
+        conditions = len(equations.conditions)
+        pressed = rest[kept + conditions :].reshape(len(self._pressed), 2, 1 + rows)
+        presses = JointPresses(
+            self._pressed, tuple(self.contacts[k] for k in self._pressed), pressed[:, :, 0], pressed[:, :, 1:]
+        )
         return ContactForces(
             own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1], by_row[:, 2 : 2 + rows],
             by_row[:, 2 + rows : 2 + rows + size].T, by_row[:, 2 + rows + size :].T,
-            rest[:kept], rest[kept:],
+            rest[:kept], rest[kept : kept + conditions], presses,
         )  # fmt: skip
 
     # the start
@@ -321,6 +391,9 @@ class EventWatch:
                 self._set(state, "active", k, 1.0)
                 self._set(state, "held", k, value)
         started = self._behind(state, frozenset())
+        if self.ending[1] is not None:
+            repair = _("give smaller coefficients, or the value of the friction")
+            raise MotionError("[[loads]]", self.ending[1], repair)
         if self.integration.names.sides:
             # what begins at zero is on the side to which it goes
             row = np.concatenate([started[:1, 0], started[HEADER:, 0]])
@@ -401,11 +474,9 @@ class EventWatch:
     def _due_below(self, number: int) -> float:
         """What of a guard at an event is still that of rounding."""
         guard = self.guards[number]
-        if guard.kind == CONDITION:
+        if guard.kind != STOP:
             return 0.0
         unit = float(self.units[guard.number])
-        if guard.kind == FRICTION:
-            return 0.0
         return 1e-14 * unit
 
     @cached_property
@@ -481,10 +552,13 @@ class EventWatch:
             guard = self.guards[number]
             if guard.kind == CONDITION:
                 ends = self._meet_condition(found, guard.number) or ends
+        if any(self.guards[number].kind == UNIQUE for number in due):
+            self.ending = (AMBIGUOUS, self._ambiguity(found))
+            return row, found, True
         behind = self._behind(found, due)
         behind[1, 0] = size
         self._record(row, behind, due, told)
-        return row, behind, ends
+        return row, behind, ends or self.ending[0] == AMBIGUOUS
 
     def _meet_condition(self, state: Array, number: int) -> bool:
         condition = self.integration.equations.conditions[number]
@@ -527,13 +601,13 @@ class EventWatch:
         let_go = {
             guard.number
             for guard in guards
-            if guard.kind != CONDITION and self._get(state, "active", guard.number)
+            if guard.kind in (STOP, FRICTION) and self._get(state, "active", guard.number)
         }
         # a flight that is too low to be told from rounding is none
         grounded = {guard.number for guard in guards if guard.kind == STOP} if self._at_once > 1 else set()
         felt = self._impact(state, self._feel(time, state[HEADER:, 0].tolist()), grounded)
         for guard in guards:
-            contact = self.contacts[guard.number] if guard.kind != CONDITION else None
+            contact = self.contacts[guard.number] if guard.kind == STOP else None
             if contact is not None and contact.kind == COMPLIANT:
                 pressed = self._get(state, "active", guard.number) != 0.0
                 self._set(state, "active", guard.number, 0.0 if pressed else guard.bound)
@@ -541,7 +615,8 @@ class EventWatch:
                 self.events.append(Event(time, kind, nan, contact.label))
                 felt = self._feel(time, state[HEADER:, 0].tolist())
         comes = {guard.number for guard in guards if guard.kind == FRICTION} - let_go
-        self._choose_modes(state, felt, let_go, comes)
+        turned = {guard.number for guard in guards if guard.kind == PRESSES}
+        self._choose_modes(state, felt, let_go, comes, turned)
         return self._closed_state(state)
 
     def _closed_state(self, state: Array) -> Array:
@@ -552,6 +627,10 @@ class EventWatch:
             carried[problem.carried_names.index(INDEPENDENCE)] = 0.0
         closed = self.integration.closing_function([float(state[0, 0]), 1.0, *self._numbers, *carried])
         state[HEADER:, 0] = closed
+        if any(
+            self.guards[k].kind == UNIQUE and state[row, 0] < 0.0 for k, row in enumerate(self._guard_rows)
+        ):
+            self.ending = (AMBIGUOUS, self._ambiguity(state))
         # what is passed already is none: a guard at zero counts from there on
         rows = self._guard_rows
         state[rows, 0] = np.maximum(state[rows, 0], 0.0)
@@ -641,7 +720,7 @@ class EventWatch:
 
     def _bounces(self, hits: Iterable[int], grounded: set[int]) -> bool:
         """Whether all that hits flies off whatever forces there are, so that only speeds are needed behind it."""
-        has_rows = len(self._rows) == len(self.contacts)
+        has_rows = len(self._rows) == len(self.contacts) and not self._pressed
         return has_rows and all(self.contacts[k].restitution >= 1.0 and k not in grounded for k in hits)
 
     def _apply(
@@ -702,10 +781,18 @@ class EventWatch:
 
     # modes
 
-    def _choose_modes(self, state: Array, felt: ContactForces, let_go: set[int], comes: set[int]) -> None:
+    def _choose_modes(
+        self,
+        state: Array,
+        felt: ContactForces,
+        let_go: set[int],
+        comes: set[int],
+        turned: Collection[int] = (),
+    ) -> None:
         """What sticks, slips, is closed or opens, by the forces that would hold it.
 
-        What is in `let_go` is at the limit of its force; what is in `comes` has come to rest on its surface.
+        What is in `let_go` is at the limit of its force; what is in `comes` has come to rest on its surface. In
+        `turned` are sliders that other numbers begin to press.
         """
         held: dict[int, float] = {}
         before = {k: self._get(state, "active", k) for k in self._rows}
@@ -731,7 +818,11 @@ class EventWatch:
                         held[k] = bound
         if held and felt.is_late:
             felt = self._feel(float(state[0, 0]), state[HEADER:, 0].tolist())
+        if self._pressed:
+            felt = self._with_limits(state, felt, held, let_go)
         forces = self._held_forces(state, felt, held, let_go) if held else {}
+        if self._pressed:
+            self._set_weights(state, felt, forces, turned)
         time = float(state[0, 0])
         for k in self._rows:
             contact, active = self.contacts[k], before[k]
@@ -767,6 +858,15 @@ class EventWatch:
         """Forces of what goes on to be held, by contacts; what slips gets its sense."""
         # what closures hold already needs no force
         fast = {k for k in held if self._follows(felt, self._rows[k], [])}
+        if fast:
+            # what rests for an instant, as a motion that closures dictate turns round, does not stick
+            moved = self._slipping(state, felt)
+            for k in [one for one in fast if self.contacts[one].kind == FRICTION]:
+                away = float(moved[self._rows[k]])
+                if abs(away) > TURNING * self.units[k] * self.rate**2:
+                    self._set(state, "sense", k, float(np.sign(away)))
+                    fast.remove(k)
+                    del held[k]
         held = {k: bound for k, bound in held.items() if k not in fast}
         found = {k: 0.0 for k in fast if self.contacts[k].kind != STOP}
         for k in [one for one in held if one in let_go and self.contacts[one].kind == FRICTION]:
@@ -795,6 +895,109 @@ class EventWatch:
             del held[k]
         return found
 
+    # friction by coefficients
+
+    def _row_forces(self, state: Array, felt: ContactForces, held: Mapping[int, float]) -> Array:
+        """Forces along rows: those of what is held, and the friction of what slips by its limits."""
+        forces = np.zeros(len(self._rows))
+        for k, row in self._rows.items():
+            if k in held:
+                forces[row] = held[k]
+            elif self.contacts[k].kind == FRICTION:
+                sense = self._get(state, "sense", k)
+                forces[row] = felt.forwards[k] if sense > 0.0 else felt.backwards[k] if sense < 0.0 else 0.0
+        return forces
+
+    def _with_limits(
+        self, state: Array, felt: ContactForces, held: dict[int, float], let_go: set[int]
+    ) -> ContactForces:
+        """Bounds of friction by coefficients that fit the forces and modes which follow from them."""
+        senses = {k: self._get(state, "sense", k) for k in self._rows}
+        felt = felt.with_limits(felt.presses.limits(self._present_forces(state, felt)))
+        for _round in range(ROUNDS):
+            for k, sense in senses.items():
+                self._set(state, "sense", k, sense)
+            found = self._held_forces(state, felt, dict(held), let_go) if held else {}
+            forces = self._settled_forces(state, felt, self._row_forces(state, felt, found), list(found))
+            limits = felt.presses.limits(forces)
+            apart = max(abs(a - b) for k in limits for a, b in zip(limits[k], felt.limits[k], strict=True))
+            size = max(abs(a) for k in limits for a in limits[k])
+            felt = felt.with_limits(limits)
+            if not apart > SETTLED * size:
+                break
+        else:
+            self.ending = (AMBIGUOUS, self._ambiguity(state))
+        for k, sense in senses.items():
+            self._set(state, "sense", k, sense)
+        return felt
+
+    def _settled_forces(self, state: Array, felt: ContactForces, forces: Array, held: Sequence[int]) -> Array:
+        """Forces along rows with friction by coefficients of what slips as great as what presses."""
+        slips = {k: (self._rows[k], self._get(state, "sense", k)) for k in self._pressed if k not in held}
+        slips = {k: (row, sense) for k, (row, sense) in slips.items() if sense}
+        return felt.presses.settled_forces(felt.mobility, self._independent(felt, held), forces, slips)
+
+    def _independent(self, felt: ContactForces, numbers: Iterable[int]) -> list[int]:
+        """Rows of contacts: of what holds the same thing twice the first bears it, as in the steps."""
+        rows: list[int] = []
+        for k in numbers:
+            if not self._follows(felt, self._rows[k], rows):
+                rows.append(self._rows[k])
+        return rows
+
+    def _present_forces(self, state: Array, felt: ContactForces) -> Array:
+        """Forces along rows in the modes that are still set."""
+        active = [k for k in self._rows if self._get(state, "active", k)]
+        rows = self._independent(felt, active)
+        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self._pressed], 0.0))
+        if rows:
+            right = felt.free + felt.mobility @ forces
+            forces[rows] -= np.linalg.solve(felt.mobility[rows][:, rows], right[rows])
+        return self._settled_forces(state, felt, forces, active)
+
+    def _set_weights(
+        self, state: Array, felt: ContactForces, held: Mapping[int, float], turned: Collection[int]
+    ) -> None:
+        """What presses from here on: signs of normal forces, and directions of the forces of pins."""
+        senses = {k: self._get(state, "sense", k) for k in self._pressed}
+        lost = {k: (self._get(state, "first", k), self._get(state, "second", k)) for k in turned}
+        weights = felt.presses.weights(self._row_forces(state, felt, held), senses, lost)
+        for k, (first, second) in weights.items():
+            self._set(state, "first", k, first)
+            self._set(state, "second", k, second)
+
+    def _ambiguity(self, state: Array) -> str:
+        """The sentence that names the friction which has no or several solutions."""
+        time = float(state[0, 0])
+        felt = self._feel(time, state[HEADER:, 0].tolist())
+        slips = [k for k in self._pressed if self._get(state, "sense", k)] or list(self._pressed)
+        held = [self._rows[k] for k in self._rows if self._get(state, "active", k)]
+        feedback = felt.presses.feedback(felt.mobility, held, {k: self._rows[k] for k in slips})
+        worst = max(feedback, key=lambda k: feedback[k])
+        what = _("at {time:.9g} s friction at {contact} may have no or several solutions")
+        if len(slips) == 1:
+            count = self._solutions(state, felt, worst, held)
+            if count == 0:
+                what = _("at {time:.9g} s friction at {contact} has no solution from there on")
+            elif count is not None:
+                what = _("at {time:.9g} s friction at {contact} has several solutions from there on")
+        return what.format(time=time, contact=self.contacts[worst].label)
+
+    def _solutions(self, state: Array, felt: ContactForces, number: int, held: Sequence[int]) -> int | None:
+        """How many forces of the only friction that slips fit; None where what presses without it vanishes too."""
+        presses, rows = felt.presses, list(held)
+        forces = np.zeros(len(self._rows))
+        if rows:
+            forces[rows] = np.linalg.lstsq(felt.mobility[rows][:, rows], -felt.free[rows], rcond=1e-11)[0]
+        at = presses.numbers.index(number)
+        response = response_with_held(felt.mobility, held, self._rows[number])
+        reaction = presses.base[at] + presses.gains[at] @ forces
+        sense = self._get(state, "sense", number) or 1.0
+        slipping = presses.reactions(self._present_forces(state, felt))[number]
+        if np.max(np.abs(reaction)) <= VANISHES * np.max(np.abs(slipping)):
+            return None
+        return presses.solutions(number, reaction, presses.gains[at] @ response, sense)
+
     def _bounds(self, felt: ContactForces, number: int, bound: float = 0.0) -> tuple[float, float]:
         """Least and greatest force of a contact that is held."""
         contact = self.contacts[number]
@@ -803,6 +1006,8 @@ class EventWatch:
         if contact.kind == STOP:
             # pushed down from a bound above, up from one below
             return (-inf, 0.0) if bound > 0.0 else (0.0, inf)
+        if number in felt.limits:
+            return felt.limits[number].least, felt.limits[number].most
         least, most = sorted((float(felt.forwards[number]), float(felt.backwards[number])))
         if contact.static is not None:
             least, most = min(-float(contact.static), least), max(float(contact.static), most)

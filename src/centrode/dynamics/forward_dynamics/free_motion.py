@@ -31,6 +31,10 @@ from centrode.dynamics.forward_dynamics.initial_state import (
 from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 from centrode.dynamics.forward_dynamics.kept_drives import kept_drives_of
 from centrode.dynamics.forward_dynamics.motion_steps import DURATION
+from centrode.dynamics.forward_dynamics.pressed_contacts import (
+    pressed_contacts_of,
+    refuse_undetermined_presses,
+)
 from centrode.dynamics.forward_dynamics.solvability import solvable_equations
 from centrode.dynamics.forward_dynamics.spanning_tree import (
     JointCoordinate,
@@ -38,6 +42,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     spanning_tree_of,
 )
 from centrode.dynamics.forward_dynamics.trajectory import Trajectory, trajectory_of, trajectory_points
+from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.masses import massless_links
 from centrode.errors import InputError
@@ -227,8 +232,10 @@ def free_motion_of(
     """
     tree = spanning_tree_of(mechanism)
     position = position_of_description(mechanism, tree)
-    burden = MassesAndLoads.of(mechanism)
-    loads = free_loads_of(mechanism, burden.loads, efforts)
+    pressed = pressed_contacts_of(mechanism)
+    given = without_friction(mechanism)
+    burden = MassesAndLoads.of(given)
+    loads = free_loads_of(given, burden.loads, efforts)
     kept = kept_drives_of(mechanism, float(position.numbers.scale), keeps)
     equations = EquationsOfMotion(
         tree,
@@ -237,9 +244,10 @@ def free_motion_of(
         loads,
         kept,
         shafts=shafts_of(mechanism),
-        contacts=contacts_of(mechanism, dry_frictions_of(mechanism, burden.loads)),
+        contacts=contacts_of(mechanism, (*dry_frictions_of(given, burden.loads), *pressed)),
         conditions=conditions_of(mechanism),
         controls=controls_of(mechanism, coordinate_of_drive),
     )
     equations, rank = solvable_equations(equations, position.coordinates)
+    refuse_undetermined_presses(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)

@@ -35,7 +35,6 @@ from centrode.dynamics.forward_dynamics.motion_problem import (
 from centrode.dynamics.forward_dynamics.motion_steps import (
     BLOW_UP,
     CHANGE_POINT,
-    CONDITION_ENDS,
     CROSSING,
     DURATION,
     NEAR_MISS,
@@ -234,12 +233,15 @@ class MotionIntegration:
                 row, state, ends = watch.pass_event(before, state, max(size, 0.5 * (time - before[0])))
                 kept += [row[None], row_of(state)[None]]
                 if ends:
-                    ended = CONDITION_ENDS
+                    ended, cause = watch.ending
                     break
                 continue
             if watch is not None and time >= pause and pause < duration:
                 state = watch.release(state, time)
                 kept.append(row_of(state)[None])
+                if watch.ending[1] is not None:
+                    ended, cause = watch.ending
+                    break
                 continue
             if time >= duration:
                 break

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
-from centrode.dynamics.forward_dynamics.contacts import Contact, SmoothFriction
+from centrode.dynamics.forward_dynamics.contacts import Contact, JointPressing, SmoothFriction
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, LoadAlong
 from centrode.dynamics.load_coordinates import Component
 from centrode.dynamics.loads import (
@@ -57,6 +57,17 @@ def _map_contact(contact: Contact, function: Function) -> Contact:
         backwards=None if contact.backwards is None else _map_law(contact.backwards, function),
         static=known(contact.static),
         drift=function(contact.drift),
+        pressing=None if contact.pressing is None else _map_pressing(contact.pressing, function),
+    )
+
+
+def _map_pressing(pressing: JointPressing, function: Function) -> JointPressing:
+    return replace(
+        pressing,
+        kinetic=function(pressing.kinetic),
+        static=function(pressing.static),
+        length=function(pressing.length),
+        height=function(pressing.height),
     )
 
 

@@ -18,10 +18,23 @@ from centrode.dynamics.forward_dynamics.contacts import (
     FRICTION,
     STOP,
     ContactMode,
+    pressed_numbers,
 )
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.elimination import is_zero, times
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Flags
+from centrode.dynamics.forward_dynamics.equations_of_motion import (
+    EquationsOfMotion,
+    Flags,
+    MassSystem,
+    Motion,
+    Terms,
+)
+from centrode.dynamics.forward_dynamics.reaction_friction import (
+    UNSETTLED,
+    greatest_press,
+    mode_margin,
+    uniqueness,
+)
 from centrode.dynamics.forward_dynamics.spanning_tree import JointValues, Rotor
 from centrode.dynamics.load_coordinates import Turn
 from centrode.dynamics.loads import EnergyClass
@@ -54,12 +67,16 @@ less
 than this until they lose rank."""
 NEVER = 1e300
 CONDITION = "condition"
+PRESSES, UNIQUE = "presses", "unique"
+"""Guards of friction by coefficients: what presses a slider is the same, and there is one solution."""
 PASSED = 2.0
 """Value of what stops the steps where a guard has passed zero; added to that of a change point."""
 LEAST_GAP = 1e-15
 """Share of the greatest length that two digits of a place are apart."""
 ROUNDING = 1e-13
 """Share of lengths, speeds and accelerations below which a guard is taken for zero."""
+PRESS_ROUNDING = 1e-13
+"""Share of the forces that make a reaction below which what presses is taken for the same."""
 CONTROLS = (END, SMALLEST, TOLERANCE, RATE, LENGTH)
 """Parameters of a lane: its end, its least step, the error of a step, what speeds and lengths are compared with."""
 
@@ -77,6 +94,8 @@ class MotionNames:
     active: tuple[str, ...] = ()
     senses: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
+    first: tuple[str, ...] = ()
+    second: tuple[str, ...] = ()
     guards: tuple[str, ...] = ()
     sides: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
@@ -103,6 +122,8 @@ class MotionNames:
             tuple(f"active {k}" for k in range(len(equations.contacts))),
             tuple(f"sense {k}" for k in range(len(equations.contacts))),
             tuple(f"held {k}" for k in range(len(equations.contacts))),
+            tuple(f"first {k}" for k in pressed_numbers(equations.contacts)),
+            tuple(f"second {k}" for k in pressed_numbers(equations.contacts)),
             tuple(f"guard {k}" for k in range(len(guards_of(equations)))),
             tuple(f"side {k}" for k in range(len(equations.conditions))),
             tuple(f"state {k}" for k in range(len(states_of(equations.controls)))),
@@ -111,7 +132,7 @@ class MotionNames:
     @property
     def modes(self) -> tuple[str, ...]:
         """What stays as it is between events."""
-        return (*self.active, *self.senses, *self.held, *self.sides)
+        return (*self.active, *self.senses, *self.held, *self.first, *self.second, *self.sides)
 
     @property
     def unknowns(self) -> tuple[str, ...]:
@@ -145,8 +166,8 @@ class Guard(NamedTuple):
 
     Attributes
     ----------
-    kind : "stop", "friction" or "condition"
-    number : of the contact or the condition
+    kind : "stop", "friction", "presses", "unique" or "condition"
+    number : of the contact or the condition; that of the first contact where all are meant
     bound : -1 or +1 of a stop
     """
 
@@ -156,14 +177,17 @@ class Guard(NamedTuple):
 
 
 def guards_of(equations: EquationsOfMotion) -> tuple[Guard, ...]:
-    """Guards of a motion: one for each bound of a stop, for each friction and each condition."""
+    """Guards of a motion: of each bound of a stop, of each friction and of each condition."""
     found = []
     for k, contact in enumerate(equations.contacts):
         if contact.kind == FRICTION:
             found.append(Guard(FRICTION, k))
+        if contact.pressing is not None and not contact.pressing.is_round:
+            found.append(Guard(PRESSES, k))
         for bound, value in ((AT_LEAST, contact.least), (AT_MOST, contact.most)):
             if value is not None:
                 found.append(Guard(STOP, k, bound))
+    found += [Guard(UNIQUE, k) for k in pressed_numbers(equations.contacts)[:1]]
     return (*found, *(Guard(CONDITION, k) for k in range(len(equations.conditions))))
 
 
@@ -171,8 +195,13 @@ def modes_of(names: MotionNames, get: Callable[[str], Number]) -> list[ContactMo
     """Modes of all contacts by a function of their names; None where nothing is watched."""
     if not (names.active or names.sides):
         return None
-    rows = zip(names.active, names.senses, names.held, strict=True)
-    return [ContactMode(*map(get, row)) for row in rows]
+    found = []
+    for k, row in enumerate(zip(names.active, names.senses, names.held, strict=True)):
+        weights = [
+            f"{name} {k}" for name in ("first", "second") if f"{name} {k}" in (*names.first, *names.second)
+        ]
+        found.append(ContactMode(*map(get, (*row, *weights))))
+    return found
 
 
 @dataclass(frozen=True)
@@ -197,18 +226,21 @@ def rates_of(
 ) -> Rates:
     """Accelerations and powers."""
     terms = equations.terms(m, values, speeds, time, modes, states)
-    accelerations, forces, chosen = equations.accelerations(m, terms, flags)
+    system = equations.system(m, terms, flags)
+    moved = equations.motion(m, terms, system)
+    accelerations = [moved.accelerations.get(k, 0.0) for k in range(equations.size)]
+    forces = [moved.forces.get(i, 0.0) for i in range(len(terms.rows))]
     kept = forces[equations.equations - len(equations.kept) : equations.equations]
     powers = [terms.powers[k] for k in worked_loads(equations)]
     # a drive's constraint is its value less the law: what moves the mechanism acts against the row
     powers += [-(force * rate) for force, rate in zip(kept, terms.rates, strict=True)]
     powers += terms.output_powers
     behind = dict((number, forces[row]) for row, number in equations.contact_rows if row < len(forces))
-    for number, (contact, one) in enumerate(zip(equations.contacts, terms.measures, strict=False)):
+    for number, (contact, one) in enumerate(zip(equations.contacts, moved.measures, strict=False)):
         # a belt works on what sticks to it; stops and clamps do not move
         carried = times(-behind[number], contact.drift) if contact.kind == FRICTION else 0.0
         powers.append(times(one.strength, one.speed) + carried)
-    return Rates(accelerations, powers, chosen, terms.state_rates)
+    return Rates(accelerations, powers, system.flags, terms.state_rates)
 
 
 def turned_rotor(rotor: Rotor, by: Number) -> Rotor:
@@ -316,58 +348,86 @@ def _guards(
     flags: Flags,
     modes: Sequence[ContactMode],
 ) -> tuple[dict[str, Number], Number]:
-    """Values of all guards behind a step, and whether one has passed zero."""
+    """Values of all guards behind a step, and whether one has passed zero; directions of what presses."""
     m = EXPRESSIONS
     states = [variable(name) for name in names.states]
     terms = equations.terms(m, values, speeds, time, modes, states)
     system = equations.system(m, terms, flags)
-    _solution, forces = system.solve(system.force, terms.bias)
-    rows = {number: row for row, number in equations.contact_rows}
+    moved = equations.motion(m, terms, system)
     found: dict[str, Number] = {}
     passed: Number = None
     for name, guard in zip(names.guards, guards_of(equations), strict=True):
-        floor: Number = 0.0
         if guard.kind == CONDITION:
             value, floor = variable(names.sides[guard.number]) * terms.conditions[guard.number], ROUNDING
+        elif guard.kind == UNIQUE:
+            found_at = m.less(moved.unsettled, UNSETTLED)
+            value, floor = m.where(found_at, uniqueness(m, moved.joints), -1.0), 0.0
+        elif guard.kind == PRESSES:
+            value, floor = _guard_of_press(guard.number, terms, moved)
         else:
-            contact, mode = equations.contacts[guard.number], modes[guard.number]
-            one = terms.measures[guard.number]
-            angular = isinstance(contact.coordinate, Turn)
-            unit: Number = 1.0 if angular else variable(LENGTH)
-            force: Number = 0.0
-            weak: Number = 0.0
-            if guard.number in rows:
-                row = rows[guard.number]
-                force = forces.get(row, 0.0)
-                # what the inertia along the row would ask for at accelerations of rounding
-                size = system.diagonal[row]
-                weak = ROUNDING * unit * variable(RATE) ** 2 / m.where(m.less(0.0, size), size, 1.0)
-            if guard.kind == FRICTION:
-                slips = mode.sense * (one.speed - contact.drift)
-                most = m.max(one.forwards, one.backwards)
-                least = m.min(one.forwards, one.backwards)
-                if contact.static is not None:
-                    most, least = m.max(contact.static, most), m.min(-contact.static, least)
-                sticks = m.less(0.5, mode.active)
-                # what holds acts against its row
-                value = m.where(sticks, m.min(most + force, -force - least), slips)
-                floor = m.where(sticks, weak, ROUNDING * unit * variable(RATE))
-            else:
-                bound = contact.least if guard.bound < 0.0 else contact.most
-                gap = guard.bound * (bound - one.value)
-                here = m.less(0.5, guard.bound * mode.active)
-                there = m.less(0.5, -guard.bound * mode.active)
-                if contact.has_row:
-                    value = m.where(here, guard.bound * force, m.where(there, unit, gap))
-                    floor = m.where(here, weak, LEAST_GAP * unit)
-                else:
-                    value = m.where(here, -gap, m.where(there, unit, gap))
-                    floor = LEAST_GAP * unit
+            value, floor = _guard_of_contact(equations, guard, terms, system, moved)
         below = m.less(value + floor, 0.0)
         # below zero by rounding alone is zero
         found[name] = m.where(below, value, m.max(value, 0.0))
         passed = below if passed is None else m.either(passed, below)
+    for number, pair in moved.weights.items():
+        pressing = equations.contacts[number].pressing
+        if pressing is not None and pressing.is_round:
+            found |= dict(zip((f"first {number}", f"second {number}"), pair, strict=True))
     return found, passed
+
+
+def _guard_of_press(number: int, terms: Terms, moved: Motion) -> tuple[Number, Number]:
+    """Whether what presses a slider that slips is still the same."""
+    m, joint = EXPRESSIONS, moved.joints[number]
+    reaction = moved.reactions[number]
+    slips = m.less(0.5, m.abs(joint.mode.sense))
+    size: Number = 0.0
+    for one in terms.openings[number][:1]:
+        size = one.size(m, moved.accelerations, moved.forces)
+    # what sticks is held by any of them
+    return m.where(slips, mode_margin(m, joint, reaction), 1.0), PRESS_ROUNDING * size
+
+
+def _guard_of_contact(
+    equations: EquationsOfMotion, guard: Guard, terms: Terms, system: MassSystem, moved: Motion
+) -> tuple[Number, Number]:
+    """Gap or force of a stop, relative speed or spare force of friction; and what of it is rounding."""
+    m = EXPRESSIONS
+    contact, mode = equations.contacts[guard.number], terms.modes[guard.number]
+    one = moved.measures[guard.number]
+    angular = isinstance(contact.coordinate, Turn)
+    unit: Number = 1.0 if angular else variable(LENGTH)
+    force: Number = 0.0
+    weak: Number = 0.0
+    row = {number: row for row, number in equations.contact_rows}.get(guard.number)
+    if row is not None:
+        force = moved.forces.get(row, 0.0)
+        # what the inertia along the row would ask for at accelerations of rounding
+        size = system.diagonal[row]
+        weak = ROUNDING * unit * variable(RATE) ** 2 / m.where(m.less(0.0, size), size, 1.0)
+    if guard.kind == FRICTION:
+        slips = mode.sense * (one.speed - contact.drift)
+        most = m.max(one.forwards, one.backwards)
+        least = m.min(one.forwards, one.backwards)
+        if contact.pressing is not None:
+            reaction = moved.reactions[guard.number]
+            most = m.max(greatest_press(m, contact, reaction, -1.0), most)
+            least = m.min(-greatest_press(m, contact, reaction, 1.0), least)
+        elif contact.static is not None:
+            most, least = m.max(contact.static, most), m.min(-contact.static, least)
+        sticks = m.less(0.5, mode.active)
+        # what holds acts against its row
+        value = m.where(sticks, m.min(most + force, -force - least), slips)
+        return value, m.where(sticks, weak, ROUNDING * unit * variable(RATE))
+    bound = contact.least if guard.bound < 0.0 else contact.most
+    gap = guard.bound * (bound - one.value)
+    here = m.less(0.5, guard.bound * mode.active)
+    there = m.less(0.5, -guard.bound * mode.active)
+    if contact.has_row:
+        value = m.where(here, guard.bound * force, m.where(there, unit, gap))
+        return value, m.where(here, weak, LEAST_GAP * unit)
+    return m.where(here, -gap, m.where(there, unit, gap)), LEAST_GAP * unit
 
 
 def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[Number]) -> dict[str, Number]:

@@ -25,7 +25,7 @@ KINDS = (
     *(STICKS, SLIPS, CONDITION_MET),
 )
 DURATION, BLOW_UP, STEP_SIZE, CHANGE_POINT = "duration", "blow-up", "step size", "change point"
-CONDITION_ENDS = "event"
+CONDITION_ENDS, AMBIGUOUS = "event", "ambiguous friction"
 """Ends of a motion."""
 
 

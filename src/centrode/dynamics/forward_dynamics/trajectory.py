@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, Terms
+from centrode.dynamics.forward_dynamics.equations_of_motion import ContactMeasure, EquationsOfMotion
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.motion_problem import MotionNames, modes_of, worked_loads
 from centrode.dynamics.forward_dynamics.motion_steps import CROSSING, NEAR_MISS, Event, MotionSteps
@@ -132,7 +132,9 @@ def trajectory_of(
             for row, name in zip(equations.flagged_rows, names.flags, strict=True)
             if modes is not None
         }
-        a, forces, _flags = equations.accelerations(ARRAYS, terms, flags or None)
+        moved = equations.motion(ARRAYS, terms, equations.system(ARRAYS, terms, flags or None))
+        a = [moved.accelerations.get(k, 0.0) for k in range(equations.size)]
+        forces = [moved.forces.get(row, 0.0) for row in range(len(terms.rows))]
         jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, a, strict=True)]
         state = equations.state(ARRAYS, values, jets, times)
         kinetic = _row(equations.kinetic_energy(state), n)
@@ -160,7 +162,7 @@ def trajectory_of(
         slides = _orders([(state.slide(guide.id),) for guide in mechanism.guides], n)[..., 0]
         drives = _orders([(state.drive(drive),) for drive in mechanism.drives], n)[..., 0]
         attitudes, spins = _attitudes(mechanism, state, n)
-        in_contacts = _contact_forces(equations, terms, forces, n)
+        in_contacts = _contact_forces(equations, moved.measures, forces, n)
         forces = forces[: equations.equations]
         multipliers = np.array([_row(x, n) for x in forces]).reshape(len(forces), n).T
         kept = {
@@ -187,11 +189,13 @@ def trajectory_of(
     )  # fmt: skip
 
 
-def _contact_forces(equations: EquationsOfMotion, terms: Terms, forces: Sequence[Number], n: int) -> Array:
+def _contact_forces(
+    equations: EquationsOfMotion, measures: Sequence[ContactMeasure], forces: Sequence[Number], n: int
+) -> Array:
     """Forces in contacts along their coordinates (n, contacts) [N or N m]."""
     rows = {number: row for row, number in equations.contact_rows}
     found = []
-    for number, one in enumerate(terms.measures):
+    for number, one in enumerate(measures):
         held = -forces[rows[number]] if number in rows else 0.0
         found.append(_row(one.strength + held, n))
     return np.array(found).reshape(-1, n).T

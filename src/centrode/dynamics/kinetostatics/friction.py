@@ -41,6 +41,7 @@ class HingeBearing:
     ----------
     coefficient : of the moment, the fit in it
     where : what messages name it by
+    static : the same of what sticks
     """
 
     point: str
@@ -49,6 +50,7 @@ class HingeBearing:
     coefficient: float
     radius: float
     where: str
+    static: float = 0.0
 
     @property
     def label(self) -> str:
@@ -74,6 +76,8 @@ class Sliding:
     ----------
     link : the slider; None where the point itself slides
     length, height : of the slider along and across the guide [m]; 0 where they do not matter
+    static : coefficient of what sticks
+    surface_speed : of a belt along the guide [m/s]
     """
 
     guide: str
@@ -83,6 +87,8 @@ class Sliding:
     length: float
     height: float
     where: str
+    static: float = 0.0
+    surface_speed: float = 0.0
 
     @property
     def label(self) -> str:
@@ -167,7 +173,17 @@ def _sliding_friction(mechanism: Mechanism, load: SliderFriction, where: str) ->
         what = _("guide {guide} has no slider of its own that could tilt").format(guide=guide.id)
         raise InputError(where, what, _("remove length and height, or give the guide a link"))
     length, height = load.length or 0.0, load.height or 0.0
-    return Sliding(guide.id, guide.link, guide.on, load.coefficient, length, height, where)
+    return Sliding(
+        guide.id,
+        guide.link,
+        guide.on,
+        load.coefficient,
+        length,
+        height,
+        where,
+        load.greatest_coefficient,
+        load.surface_speed,
+    )
 
 
 def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[HingeBearing]:
@@ -199,8 +215,8 @@ def _bearings(mechanism: Mechanism, load: BearingFriction, where: str) -> list[H
             )
         links = [load.link]
     # the fit is a factor of the moment, so it goes into the coefficient
-    coefficient = load.coefficient * FITS[load.fit]
-    return [HingeBearing(point, link, pin, coefficient, load.radius, where) for link in links]
+    coefficient, static = load.coefficient * FITS[load.fit], load.greatest_coefficient * FITS[load.fit]
+    return [HingeBearing(point, link, pin, coefficient, load.radius, where, static) for link in links]
 
 
 def _bodies(mechanism: Mechanism, point: str) -> list[str]:
@@ -489,6 +505,10 @@ def friction_of_contacts(
     state: State, free: ForceSystem, contacts: Sequence[Contact], acceleration: Array, useful: Mask
 ) -> Rubbed:
     """Friction of the contacts, from the reactions without it, at the samples where these are of use."""
+    for contact in contacts:
+        if isinstance(contact, Sliding) and contact.surface_speed:
+            what = _("friction of a belt by a coefficient is computed in simulations alone")
+            raise NotComputedYet(contact.where, what, _("remove surface_speed, or use centrode simulate"))
     system = free.system
     motions = [_motion(contact, state, system, acceleration) for contact in contacts]
     senses = np.stack([sense for sense, _slope, _turns in motions], axis=1)

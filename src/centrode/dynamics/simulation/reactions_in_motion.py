@@ -81,7 +81,7 @@ def reactions_in_motion(free: FreeMotion, course: Trajectory) -> ReactionsInMoti
     state = _state(free, course, mechanism)
     system = Kinetostatics.of(scheme, free.equations.numbers, state, Teeth.of(mechanism))
     with np.errstate(all="ignore"):
-        forces = system.forces(_acting(free, state))
+        forces = system.forces(_acting(free, course, state))
         status = reaction_status(system.inverse, np.full(len(course.time), Status.OK.value, dtype=np.int8))
         residual = float(np.max(course.position_residual, initial=0.0)) / system.scale
         undetermined = undetermined_parts(system, sides, status, residual)
@@ -150,13 +150,15 @@ def _state(free: FreeMotion, course: Trajectory, mechanism: Mechanism) -> JointS
     return replace(state, mechanism=mechanism, parameter=parameter[0], known={}, attitudes={})
 
 
-def _acting(free: FreeMotion, state: JointState) -> list[Wrench]:
-    """Loads, what drives, and inertia forces of links and shafts."""
+def _acting(free: FreeMotion, course: Trajectory, state: JointState) -> list[Wrench]:
+    """Loads, what drives, forces of stops, clamps and frictions, and inertia forces of links and shafts."""
     equations = free.equations
     pulls = [
         pull.times(load.term.strength(state)) for load in equations.loads for pull in load.term.pulls(state)
     ]
     pulls += [pull for action in inertia_forces_of(state, equations.masses, None) for pull in action.pulls]
+    for contact, force in zip(equations.contacts, course.contact_forces.T, strict=True):
+        pulls += [pull.times(force[None]) for pull in contact.coordinate.pulls(state)]
     for shaft in equations.shafts:
         moment = -shaft.inertia * state.drive(shaft.drive).derivative(2)
         pulls += [pull.times(moment) for pull in shaft.coordinate.pulls(state)]

@@ -297,6 +297,7 @@ def _check_multibody(run: xr.Dataset) -> None:
     what = {
         "change point": _("it reaches a change point that it does not pass: {cause}"),
         "blow-up": _("the motion grows beyond all bounds: {cause}"),
+        "ambiguous friction": _("friction has no or several solutions: {cause}"),
     }.get(run.attrs["ended"], _("it is broken off after {time:.6g} s: {cause}"))
     repair = _("give a shorter time, or look at what acts there: loads, masses, speeds at the start")
     raise MotionError("", what.format(time=time, cause=cause), repair)
