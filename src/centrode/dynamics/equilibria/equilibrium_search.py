@@ -98,7 +98,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
 def no_equilibrium(count: int) -> MotionError:
     """The error of a mechanism that stays nowhere, from so many positions."""
     what = _("no equilibrium is found from {count} positions")
-    repair = _("let springs, weights or friction hold it, or hold a drive: --hold DRIVE=VALUE")
+    repair = _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)")
     return MotionError("", what.format(count=count), repair)
 
 
