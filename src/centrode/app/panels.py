@@ -272,6 +272,6 @@ def mathematics_of(description: Described) -> Any:
             [" = ".join(map(spelling.mathematics, parts)) for parts in formula.lines] for formula in formulas
         ]
         made = FORMULAS([line for lines in spelled for line in lines])
-        return ["".join(f"<div>{made.displayed(line)}</div>" for line in lines) for lines in spelled]
+        return ["".join(f"<div>{made.display_formula(line)}</div>" for line in lines) for lines in spelled]
 
     return set_formulas
