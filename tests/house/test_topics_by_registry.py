@@ -55,7 +55,7 @@ ALLOWED = {
     # conclusions on a cam follow from the results of several topics
     "report/cam_conclusions.py": {"centrode.views.cam_conclusions"},
     # every document opens with the scheme of its mechanism
-    "report/opening.py": {"centrode.views.schemes"},
+    "report/opening_pictures.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic
     "render/drafting/board.py": {"centrodes"},
     "render/drafting/sheet.py": {"centrodes"},

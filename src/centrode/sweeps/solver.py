@@ -457,7 +457,7 @@ def solver(
     Returns
     -------
     Solver
-        Its `move` gives a `Frame`; threads may share it, and it is pickled by its description.
+        Its `move` gives a `MotionFrame`; threads may share it, and it is pickled by its description.
 
     Raises
     ------

@@ -144,7 +144,7 @@ class LoadedMechanism:
 
     @cached_property
     def graph(self) -> Graph:
-        """All of `LinearEquations`, entry by entry; what is a plain zero is left out."""
+        """All of the linear equations, entry by entry; what is a plain zero is left out."""
         m, equations = EXPRESSIONS, self.traced_equations.equations
         q = [variable(f"coordinate {k}") for k in range(self.size)]
         v = [variable(f"speed {k}") for k in range(self.size)]

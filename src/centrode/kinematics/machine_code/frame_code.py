@@ -1,6 +1,6 @@
 """What surrounds the kernels of one mechanism, as a function in LLVM's language: one call judges and writes.
 
-It is the same function for all mechanisms: what it works on is told by a table of addresses and counts (`Slot`). It
+It is the same function for all mechanisms: a table of addresses and counts (`FrameSlot`) tells it what to work on. It
 puts numbers where kernels look for them, calls these, finds the least and greatest of the nodes, the turns of links,
 and whether all samples close; what it computes is what `frame_kernels` computes by NumPy.
 """
@@ -320,7 +320,7 @@ done:
 
 
 def _move() -> str:
-    """Judge and write: see `Answer`."""
+    """Judge and write: see `FrameAnswer`."""
     return f"""
 define internal i64 @move(ptr %table, i64 %task) {{
 entry:
