@@ -105,7 +105,7 @@ def test_centres_stand_at_their_places() -> None:
 def test_the_pairs_that_are_asked_for() -> None:
     _results, made, figure = position("jansen-leg", pairs=[("AB", "frame")])
     assert sum(line.get_marker() == "D" for line in figure.axes[0].get_lines()) == 1
-    needed = made.needed([(2, 0)])
+    needed = made.needed_steps([(2, 0)])
     chords = [line for line in figure.axes[1].get_lines() if len(line.get_xdata()) == 2]
     assert len(chords) == len(needed.steps) == 5
 
