@@ -122,7 +122,8 @@ def player_frames(players: Sequence[MotionPlayer]) -> tuple[list[dict[str, Any]]
 
     Samples are those of the topic; where they are too many, evenly chosen ones.
     """
-    headers, arrays = [], {}
+    headers: list[dict[str, Any]] = []
+    arrays: dict[str, Any] = {}
     for number, player in enumerate(players):
         data = player.motion
         chosen = chosen_samples(data)

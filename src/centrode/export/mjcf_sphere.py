@@ -55,6 +55,7 @@ from centrode.model.loads import (
     PointForce,
     PointSpring,
     Torque,
+    TurningLoad,
 )
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
@@ -372,7 +373,7 @@ def _turning_load(
             return ActuatorLoad(name, {"site": _sites(pose, (point,))[0], "refsite": WORLD_SITE, "gear": gear},
                                 {}, 1.0)  # fmt: skip
         case HingeSpring(stiffness=stiffness, free_angle=free):
-            turn = turning_of(pose.mechanism, load, name, measured=True)
+            turn = _spin_of(pose, load, name, measured=True)
             joints = _joints_of(pose, turn)
             if joints is None or turn.joint is None:
                 return None
@@ -382,16 +383,22 @@ def _turning_load(
                 name, (), joints, {"stiffness": number(stiffness), "springlength": resting_length(rest)}
             )
         case HingeDamper(damping=viscous):
-            joints = _joints_of(pose, turning_of(pose.mechanism, load, name, measured=False))
+            joints = _joints_of(pose, _spin_of(pose, load, name, measured=False))
             return None if joints is None else TendonLoad(name, (), joints, {"damping": number(viscous)})
         case HingeFriction(value=None, viscous=float(viscous), quadratic=None):
-            joints = _joints_of(pose, turning_of(pose.mechanism, load, name, measured=False))
+            joints = _joints_of(pose, _spin_of(pose, load, name, measured=False))
             return None if joints is None else TendonLoad(name, (), joints, {"damping": number(viscous)})
         case Torque(value=float(value), table=None):
-            joints = _joints_of(pose, turning_of(pose.mechanism, load, name, measured=False))
+            joints = _joints_of(pose, _spin_of(pose, load, name, measured=False))
             return None if joints is None else ActuatorLoad(name, {}, joints, value)
         case _:
             return None
+
+
+def _spin_of(pose: SpherePose, load: TurningLoad, name: str, *, measured: bool) -> Spin:
+    turn = turning_of(pose.mechanism, load, name, measured)
+    assert isinstance(turn, Spin), "links on the sphere turn about axes"
+    return turn
 
 
 def _joints_of(pose: SpherePose, turn: Spin) -> Mapping[str, float] | None:

@@ -188,7 +188,7 @@ class _BlockWriter:
     def events(self, marks: Sequence[MarkedEvent]) -> JSON:
         """The first events in full: a row for each mark."""
         text = self.spelling.text
-        parts = {
+        parts: dict[str, tuple[Text, Sequence[Text]]] = {
             "time": (Expression("t"), [Number(one.time, "s") for one in marks[:ROWS]]),
             "event": (Sentence("event"), [one.kind for one in marks[:ROWS]]),
             "part": (Sentence("part of the event"), [one.part for one in marks[:ROWS]]),

@@ -480,7 +480,7 @@ def teeth_in_mesh(results: GearPairResults) -> list[_TeethInMesh]:
             turn, up = step / 2 + (math.pi if pair.sign > 0 else 0.0), -pair.sign
         shown = min(TEETH_SHOWN, (profile.teeth - 1) // 2)
         # The gap of the wheel lies in the middle: as many teeth on either side.
-        angles = turn + step * np.arange(-shown, shown + 1 - number)
+        angles: Array = turn + step * np.arange(-shown, shown + 1 - number, dtype=float)
         found.append(_TeethInMesh(pair.wheels[number], profile, angles, centre, up))
     return found
 

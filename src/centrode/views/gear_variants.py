@@ -48,7 +48,7 @@ def sheet(variants: GearVariants) -> Sheet:
         ]
     )
     return Sheet(
-        printed=(_printed(variants, scalars), Paragraph(Joined((counted, statuses), ": "))),
+        printed=(_printed_table(variants, scalars), Paragraph(Joined((counted, statuses), ": "))),
         tables={"summary": _summary(variants, scalars)},
         failure=_failure(variants),
     )
@@ -59,7 +59,7 @@ def _scalars(one: GearVariantResults) -> dict[str, Scalar]:
     if one.result is None:
         return {}
     view = gear_pair if isinstance(one.result, GearPairResults) else gear_train
-    return dict(view.sheet(one.result).scalars)  # type: ignore[arg-type]
+    return dict(view.sheet(one.result).scalars)
 
 
 def _teeth(one: GearVariantResults) -> Text:
@@ -67,7 +67,7 @@ def _teeth(one: GearVariantResults) -> Text:
     if one.result is None:
         return NOTHING
     if isinstance(one.result, GearPairResults):
-        return Joined([Name(str(teeth)) for teeth in one.result.gear_pair.teeth])
+        return Joined([Number(float(teeth)) for teeth in one.result.gear_pair.teeth])
     return gear_train.teeth_text(one.result.chosen)
 
 
@@ -78,10 +78,10 @@ def _numbers(scalars: list[dict[str, Scalar]], *, heads: bool) -> Iterator[Colum
         if heads and name not in HEADS:
             continue
         values = np.array([one[name].value if name in one else np.nan for one in scalars])
-        yield Column(name, values, unit, head=HEADS[name] if heads else None, unit_fixed=not heads)
+        yield Column(name, values, unit, head=HEADS[name] if heads else NOTHING, unit_fixed=not heads)
 
 
-def _printed(variants: GearVariants, scalars: list[dict[str, Scalar]]) -> Table:
+def _printed_table(variants: GearVariants, scalars: list[dict[str, Scalar]]) -> Table:
     results = variants.results
     return Table(
         (

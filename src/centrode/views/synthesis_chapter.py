@@ -76,13 +76,13 @@ def synthesis_chapter(
             Section(NOTHING, (FactTable(tuple(facts), Sentence("What is wanted and found")),)),
             Section(Sentence("How the mechanisms were sought"), (Paragraph(way), Paragraph(PROVED))),
             Section(Sentence("Answers"), tuple(found)),
-            *_constructed(construction, pictures),
+            *_construction_sections(construction, pictures),
             Section(Sentence("The best answer"), data_chapter(results.mechanism).sections[0].blocks),
         ),
     )
 
 
-def _constructed(construction: Sequence[Section], pictures: Collection[str]) -> Iterator[Section]:
+def _construction_sections(construction: Sequence[Section], pictures: Collection[str]) -> Iterator[Section]:
     """The construction with its picture."""
     drawn: tuple[Block, ...] = (Illustration("construction"),) if "construction" in pictures else ()
     if construction:

@@ -55,7 +55,8 @@ def with_contacts(
 ) -> tuple[Parts, list[Wall], list[Rubbing]]:
     """The mechanism with one or two walls that its points fall against, and friction of one or two links."""
     swung = free.integrate(free.initial(), DURATION, 1e-8, samples=26)
-    walls, stops = [], []
+    walls: list[Wall] = []
+    stops: list[Any] = []
     moving = [name for name in free.points if name not in parts["frame"]["points"]]
     for _wall in range(int(random.integers(1, 3))):
         name = str(random.choice(moving))

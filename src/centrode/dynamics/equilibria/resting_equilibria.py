@@ -184,7 +184,7 @@ def _with_closed(
             -sign * force * _unit(loaded, stop) > PUSHING * scale
             for (stop, _bound, sign), force in zip(closed, forces, strict=True)
         )
-        if pushes and _allowed(loaded, values[k], closed):
+        if pushes and _is_allowed(loaded, values[k], closed):
             labels = [stop.label for stop, _bound, _sign in closed]
             own = reactions[k, first - len(loaded.equations.kept) : first]
             yield RestingEquilibrium(
@@ -239,7 +239,7 @@ def _closed_stop(mechanism: Mechanism, stop: Stop, bound: float) -> KeptDrive:
     return KeptDrive(constraint, DrivenBy(Drive(guide=name, start=bound, speed=0.0), Uniform(0.0), bound))
 
 
-def _allowed(loaded: LoadedMechanism, values: Array, closed: Sequence[tuple[Stop, float, float]]) -> bool:
+def _is_allowed(loaded: LoadedMechanism, values: Array, closed: Sequence[tuple[Stop, float, float]]) -> bool:
     """Whether the closed stops are at their bounds, turns counted, and the others within them."""
     at = {stop.label: bound for stop, bound, _sign in closed}
     for stop, value in zip(loaded.mechanism.stops, values, strict=True):

@@ -291,7 +291,7 @@ class EventWatch:
         return {number: row - rows[0][0] for row, number in rows}
 
     @cached_property
-    def _pressed(self) -> tuple[int, ...]:
+    def _pressed_contacts(self) -> tuple[int, ...]:
         """Numbers of the contacts with friction by coefficients."""
         return pressed_numbers(self.contacts)
 
@@ -354,9 +354,12 @@ class EventWatch:
         by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
         rest = numbers[4 * count + rows * width :]
         conditions = len(equations.conditions)
-        pressed = rest[kept + conditions :].reshape(len(self._pressed), 2, 1 + rows)
+        pressed = rest[kept + conditions :].reshape(len(self._pressed_contacts), 2, 1 + rows)
         presses = JointPresses(
-            self._pressed, tuple(self.contacts[k] for k in self._pressed), pressed[:, :, 0], pressed[:, :, 1:]
+            self._pressed_contacts,
+            tuple(self.contacts[k] for k in self._pressed_contacts),
+            pressed[:, :, 0],
+            pressed[:, :, 1:],
         )
         return ContactForces(
             own[:, 0], own[:, 1], own[:, 2], own[:, 3], by_row[:, 0], by_row[:, 1], by_row[:, 2 : 2 + rows],
@@ -720,7 +723,7 @@ class EventWatch:
 
     def _bounces(self, hits: Iterable[int], grounded: set[int]) -> bool:
         """Whether all that hits flies off whatever forces there are, so that only speeds are needed behind it."""
-        has_rows = len(self._rows) == len(self.contacts) and not self._pressed
+        has_rows = len(self._rows) == len(self.contacts) and not self._pressed_contacts
         return has_rows and all(self.contacts[k].restitution >= 1.0 and k not in grounded for k in hits)
 
     def _apply(
@@ -818,10 +821,10 @@ class EventWatch:
                         held[k] = bound
         if held and felt.is_late:
             felt = self._feel(float(state[0, 0]), state[HEADER:, 0].tolist())
-        if self._pressed:
+        if self._pressed_contacts:
             felt = self._with_limits(state, felt, held, let_go)
         forces = self._held_forces(state, felt, held, let_go) if held else {}
-        if self._pressed:
+        if self._pressed_contacts:
             self._set_weights(state, felt, forces, turned)
         time = float(state[0, 0])
         for k in self._rows:
@@ -933,7 +936,9 @@ class EventWatch:
 
     def _settled_forces(self, state: Array, felt: ContactForces, forces: Array, held: Sequence[int]) -> Array:
         """Forces along rows with friction by coefficients of what slips as great as what presses."""
-        slips = {k: (self._rows[k], self._get(state, "sense", k)) for k in self._pressed if k not in held}
+        slips = {
+            k: (self._rows[k], self._get(state, "sense", k)) for k in self._pressed_contacts if k not in held
+        }
         slips = {k: (row, sense) for k, (row, sense) in slips.items() if sense}
         return felt.presses.settled_forces(felt.mobility, self._independent(felt, held), forces, slips)
 
@@ -949,7 +954,7 @@ class EventWatch:
         """Forces along rows in the modes that are still set."""
         active = [k for k in self._rows if self._get(state, "active", k)]
         rows = self._independent(felt, active)
-        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self._pressed], 0.0))
+        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self._pressed_contacts], 0.0))
         if rows:
             right = felt.free + felt.mobility @ forces
             forces[rows] -= np.linalg.solve(felt.mobility[rows][:, rows], right[rows])
@@ -959,7 +964,7 @@ class EventWatch:
         self, state: Array, felt: ContactForces, held: Mapping[int, float], turned: Collection[int]
     ) -> None:
         """What presses from here on: signs of normal forces, and directions of the forces of pins."""
-        senses = {k: self._get(state, "sense", k) for k in self._pressed}
+        senses = {k: self._get(state, "sense", k) for k in self._pressed_contacts}
         lost = {k: (self._get(state, "first", k), self._get(state, "second", k)) for k in turned}
         weights = felt.presses.weights(self._row_forces(state, felt, held), senses, lost)
         for k, (first, second) in weights.items():
@@ -970,7 +975,9 @@ class EventWatch:
         """The sentence that names the friction which has no or several solutions."""
         time = float(state[0, 0])
         felt = self._feel(time, state[HEADER:, 0].tolist())
-        slips = [k for k in self._pressed if self._get(state, "sense", k)] or list(self._pressed)
+        slips = [k for k in self._pressed_contacts if self._get(state, "sense", k)] or list(
+            self._pressed_contacts
+        )
         held = [self._rows[k] for k in self._rows if self._get(state, "active", k)]
         feedback = felt.presses.feedback(felt.mobility, held, {k: self._rows[k] for k in slips})
         worst = max(feedback, key=lambda k: feedback[k])

@@ -122,16 +122,16 @@ def _at_weights(
     for k, joint in joints.items():
         first, second = weights[k]
 
-        def pressed(
+        def press_along_weights(
             reaction: Sequence[Number], joint: PressedJoint = joint, w: Pair = (first, second)
         ) -> Number:
             x, y = joint.parts(reaction)
             one, other = times(w[0], x), times(w[1], y)
             return other if is_zero(one) else one if is_zero(other) else one + other
 
-        right[k] = -times(joint.factor, pressed(joint.base))
+        right[k] = -times(joint.factor, press_along_weights(joint.base))
         for number, gain in joint.gains.items():
-            matrix[k, number] = times(joint.factor, pressed(gain))
+            matrix[k, number] = times(joint.factor, press_along_weights(gain))
         matrix[k, k] = 1.0 + matrix[k, k]
     forces = _solve(list(joints), matrix, right)
     return forces, {k: joint.reaction(forces) for k, joint in joints.items()}

@@ -152,13 +152,13 @@ class _RegimeSearch:
             raise MotionError("[simulation]", what, _("let them be whole multiples of the slowest"))
         return 2.0 * np.pi / slowest
 
-    def turned(self, coordinates: Array) -> Array:
+    def turned_angles(self, coordinates: Array) -> Array:
         """By how much angles have turned (coordinates); zero of displacements."""
         return np.where(self.angles, np.abs(coordinates[-1] - coordinates[0]), 0.0)
 
     def turns_twice(self, coordinates: Array) -> bool:
         """Whether something turns all the way round twice."""
-        return bool(np.max(self.turned(coordinates), initial=0.0) >= 4.0 * np.pi)
+        return bool(np.max(self.turned_angles(coordinates), initial=0.0) >= 4.0 * np.pi)
 
     def last_recurrence(self, start: InitialState, run: Trajectory) -> tuple[int, float, float]:
         """What moves fastest in the longest free flight between two like events, an instant there, and their distance.
@@ -203,7 +203,7 @@ class _RegimeSearch:
 
     def last_turn(self, times: Array, coordinates: Array) -> tuple[int, float, float]:
         """The angle that turns most, when it begins its last whole turn, and how long that takes."""
-        number = int(np.argmax(self.turned(coordinates)))
+        number = int(np.argmax(self.turned_angles(coordinates)))
         course = coordinates[:, number] * np.sign(coordinates[-1, number] - coordinates[0, number])
         end = float(course[-1])
         ends = []

@@ -55,7 +55,7 @@ CROSS = 0.012
 """Half the size of the centre's sign, over that of the outlines."""
 FOLLOWER = PALETTE[2]
 BASE_CIRCLE: Mapping[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (1.2, 2.0))}
-PENS: Mapping[LineUse, dict[str, Any]] = {
+PENS: Mapping[LineUse, Mapping[str, Any]] = {
     LineUse.AXIS: {"color": MUTED, "linewidth": 0.8, "linestyle": CENTRE_LINE, "zorder": 1},
     LineUse.FOLLOWER: {"color": FOLLOWER, "linewidth": 2.0, "zorder": 4, "solid_capstyle": "round"},
     LineUse.NORMAL: {"color": MUTED, "linewidth": 0.6, "zorder": 2},
