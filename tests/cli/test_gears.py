@@ -83,6 +83,68 @@ def test_a_pair_as_a_document(centrode: Centrode, folder: Path) -> None:
     assert "instants are those of mechanisms" in centrode("report", "rack-gear-pair", "--at", "1 rad").err
 
 
+RECOMMENDED = """kind = "gear pair"
+module = "5 mm"
+teeth = [14, 50]
+shifts = "standard"
+"""
+
+
+@pytest.mark.parametrize(
+    ("rest", "shifts", "row"),
+    [
+        ("", "0.5; 0.5", "centre distance not given; pinion of 10 to 30 teeth"),
+        (
+            'centre_distance = "160 mm"',
+            "0.3; -0.3",
+            "centre distance without shifts; pinion of 14 to 20 teeth; ratio of 3.5 or more",
+        ),
+        ('centre_distance = "161 mm"', "; 0, ", "sum of the shifts above 0, at most 0.5"),
+        ("teeth = [31, 50]", "0; 0", "centre distance not given; pinion of 31 teeth or more"),
+    ],
+)
+def test_recommended_shifts_come_with_their_row(
+    centrode: Centrode, folder: Path, rest: str, shifts: str, row: str
+) -> None:
+    kept = RECOMMENDED.replace("teeth = [14, 50]\n", "") if rest.startswith("teeth") else RECOMMENDED
+    (folder / "pair.toml").write_text(kept + rest + "\n", encoding="utf-8")
+    done = centrode("gears", "pair.toml")
+    assert done.code == 0, done
+    lines = {line[:28].strip(): line[28:].strip() for line in done.out.splitlines()}
+    assert shifts in lines["shift coefficients"]
+    assert "recommended by GOST 16532" in lines["shift coefficients"]
+    assert row in " ".join(done.out.split())
+
+
+def test_a_sum_without_recommended_shifts_is_refused(centrode: Centrode, folder: Path) -> None:
+    (folder / "pair.toml").write_text(RECOMMENDED + 'centre_distance = "165 mm"\n', encoding="utf-8")
+    done = centrode("gears", "pair.toml")
+    assert done.code == 2
+    assert "pair.toml, centre_distance: GOST 16532 recommends shifts for sums from 0 to 1" in done.err
+
+
+@pytest.mark.parametrize(
+    ("language", "row"),
+    [
+        ("en", "kinematic transmission; centre distance not given; pinion of 12 to 16 teeth; "
+               "wheel of 22 teeth or more"),
+        ("ru", "кинематическая передача; межосевое расстояние не задано; число зубьев шестерни от 12 до 16; "
+               "число зубьев колеса не менее 22"),
+        ("uk", "кінематична передача; міжосьову відстань не задано; кількість зубців шестірні від 12 до 16; "
+               "кількість зубців колеса не менша за 22"),
+    ],
+)  # fmt: skip
+def test_command_and_document_name_the_row_in_each_language(
+    centrode: Centrode, folder: Path, language: str, row: str
+) -> None:
+    text = RECOMMENDED + 'application = "kinematic"\n'
+    (folder / "pair.toml").write_text(text, encoding="utf-8")
+    assert row in " ".join(centrode("--lang", language, "gears", "pair.toml").out.split())
+    done = centrode("--lang", language, "report", "pair.toml", "--out", "pair.html", "--chapters", "data")
+    assert done.code == 0, done
+    assert row in " ".join((folder / "pair.html").read_text(encoding="utf-8").split())
+
+
 def test_an_animation_needs_a_folder(centrode: Centrode) -> None:
     done = centrode("gears", "rack-gear-pair", "--animate")
     assert done.code == 2

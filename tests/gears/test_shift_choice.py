@@ -121,7 +121,6 @@ def pair_text(**keys: object) -> str:
         ({"teeth": '[12, "rak"]'}, 'did you mean "rack"'),
         ({"teeth": "[12]"}, "[pinion, wheel]"),
         ({"shifts": '"equal slidng"'}, "equal sliding"),
-        ({"shifts": '"standard"'}, "GOST 16532"),
         ({"shifts": "[0.6, 9]"}, "between -5 and 5"),
         ({"module": "0"}, "positive"),
         ({"centre_distance": '"57 mm"'}, "both given"),

@@ -16,7 +16,7 @@ from centrode.assignments.tables import NAME, NAMES, Table, refuse_equal_names, 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.examples.catalogue import files_of
-from centrode.model.gear_pairs import GearPair
+from centrode.model.gear_pairs import STANDARD, GearPair
 from centrode.model.gear_trains import GearTrain
 from centrode.model.links import part_tables
 from centrode.model.reading import nearest, value_text
@@ -147,13 +147,15 @@ def _variant(described: GearDescription, name: str, values: Mapping[Key, object]
 
 
 def _leave_room(tables: dict[str, Any], values: Mapping[Key, object]) -> None:
-    """Remove what the row gives in another way: a centre distance or shifts, a ratio or speeds."""
+    """Remove what the row gives in another way, and an application of which other shifts know nothing."""
     heads = {key[0] for key in values}
     numbers = ("shifts", 0) in values or ("shifts", 1) in values
     if numbers and "centre_distance" not in heads:
         tables.pop("centre_distance", None)
     if "centre_distance" in heads and not isinstance(tables.get("shifts"), str) and "shifts" not in heads:
         tables.pop("shifts", None)
+    if "shifts" in heads and values.get(("shifts",)) != STANDARD and "application" not in heads:
+        tables.pop("application", None)
     if "ratio" in heads:
         for speed in {"input_speed", "output_speed"} - heads:
             tables.pop(speed, None)

@@ -16,11 +16,12 @@ from centrode.gears.pair_faults import PairFault, pair_faults
 from centrode.gears.pair_geometry import PairGeometry, PairKind
 from centrode.gears.profiles import ToothProfile, tooth_profile, true_contact_ratio
 from centrode.gears.racks import ReferenceRack
-from centrode.gears.shift_choice import chosen_shifts
+from centrode.gears.recommended_shifts import RecommendedRow, recommended_row
+from centrode.gears.shift_choice import chosen_shifts, shift_sum_at
 from centrode.geometry.involute import involute
 from centrode.locale import _
 from centrode.model.examples.catalogue import GearPairSource, gear_pair_of
-from centrode.model.gear_pairs import RACK, GearPair
+from centrode.model.gear_pairs import RACK, STANDARD, GearPair
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,16 @@ class GearPairResults:
     def faults(self) -> tuple[PairFault, ...]:
         """Everything that keeps the pair from working; empty where it works."""
         return tuple(pair_faults(self.geometry))
+
+    @cached_property
+    def recommendation(self) -> RecommendedRow | None:
+        """The row of the recommendation that gave the shifts; None where they are given or have another purpose."""
+        described, pair = self.gear_pair, self.geometry
+        if described.purpose != STANDARD:
+            return None
+        distance = described.centre_distance
+        total = None if distance is None else shift_sum_at(pair, distance)
+        return recommended_row(pair.teeth, described.intended_application, total)
 
     @cached_property
     def line_of_action(self) -> LineOfAction:
@@ -172,7 +183,7 @@ def gear_pair(source: GearPairSource) -> GearPairResults:
     Raises
     ------
     InputError
-        A description that is none; a centre distance that cannot be.
+        A description that is none; a centre distance that cannot be; a pair without recommended shifts.
     MotionError
         Wheels that cannot mesh, or no shifts that fulfil the purpose.
 
@@ -189,7 +200,9 @@ def gear_pair(source: GearPairSource) -> GearPairResults:
         shifts = described.shifts
         assert isinstance(shifts, tuple)
     else:
-        shifts = chosen_shifts(geometry, described.purpose, described.centre_distance)
+        shifts = chosen_shifts(
+            geometry, described.purpose, described.centre_distance, described.intended_application
+        )
     geometry = PairGeometry(
         geometry.kind,
         geometry.module,

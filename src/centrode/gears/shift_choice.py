@@ -1,4 +1,4 @@
-"""Shifts by their purpose: no undercut, equal sliding, least sliding, strength, a centre distance."""
+"""Shifts by their purpose: no undercut, equal sliding, least sliding, strength, the standard, a centre distance."""
 
 from __future__ import annotations
 
@@ -20,9 +20,11 @@ from centrode.gears.blocking_contour import (
 )
 from centrode.gears.involutes import Array
 from centrode.gears.pair_geometry import PairGeometry
+from centrode.gears.recommended_shifts import recommended_row
 from centrode.gears.shift_fields import ShiftFields, shift_fields
 from centrode.geometry.involute import involute
 from centrode.locale import _, mark
+from centrode.model.gear_pairs import Application
 from centrode.numerics.search import interpolated_roots
 
 _NO_SHIFTS = mark("no shifts of these wheels keep contact ratio, tips and flanks within their bounds")
@@ -51,7 +53,10 @@ def shift_sum_at(pair: PairGeometry, centre_distance: float) -> float:
 
 
 def chosen_shifts(
-    pair: PairGeometry, purpose: str, centre_distance: float | None = None
+    pair: PairGeometry,
+    purpose: str,
+    centre_distance: float | None = None,
+    application: Application = "power",
 ) -> tuple[float, float]:
     """Both shifts for a purpose.
 
@@ -63,19 +68,24 @@ def chosen_shifts(
         wheel where that allows it, so that the centre distance stays. "equal sliding": the greatest specific sliding is
         equal on both wheels, on the line of the centre distance, or of the sum that "no undercut" has. "least sliding":
         the greater one of both is least. "strength": the relative radius of curvature at the pitch point is greatest.
-        The last two keep a contact ratio of 1.2, tips of 0.25 m, no undercut and no interference.
+        These two keep a contact ratio of 1.2, tips of 0.25 m, no undercut and no interference. "standard": as
+        GOST 16532-70 recommends for spur external pairs of its rack, the pinion first; the bounds of the numbers of
+        teeth are those of textbooks and were not compared with the printed standard.
     centre_distance : [m]; the sum of the shifts follows from it
+    application : what the pair is for; of "standard" alone
 
     Raises
     ------
     MotionError
         No shifts keep these bounds.
     InputError
-        A centre distance that cannot be.
+        A centre distance that cannot be; a pair of which the recommendation says nothing.
     """
     total = None if centre_distance is None else shift_sum_at(pair, centre_distance)
     if purpose == "no undercut":
         return _without_undercut(pair, total)
+    if purpose == "standard":
+        return recommended_row(pair.teeth, application, total).shifts(total or 0.0)
     if purpose == "equal sliding":
         if total is None:
             plain = _without_undercut(pair, None)

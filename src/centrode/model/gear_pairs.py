@@ -34,13 +34,17 @@ from centrode.model.values import (
 
 KIND = "gear pair"
 RACK = "rack"
-PURPOSES = ("no undercut", "equal sliding", "least sliding", "strength")
+PURPOSES = ("no undercut", "equal sliding", "least sliding", "strength", "standard")
 """What shifts may be chosen for."""
+STANDARD = "standard"
+APPLICATIONS = ("power", "kinematic")
+"""What pairs are for, as GOST 16532 tells them apart."""
 FEWEST_TEETH, MOST_TEETH = 4, 1000
 MOST_SHIFT = 5.0
 
 Teeth: TypeAlias = tuple[int, int | Literal["rack"]]
-Purpose: TypeAlias = Literal["no undercut", "equal sliding", "least sliding", "strength"]
+Purpose: TypeAlias = Literal["no undercut", "equal sliding", "least sliding", "strength", "standard"]
+Application: TypeAlias = Literal["power", "kinematic"]
 
 
 def read_teeth(value: object) -> Teeth:
@@ -67,9 +71,6 @@ def _tooth_number(value: object) -> int:
 def read_shifts(value: object) -> tuple[float, float] | Purpose:
     """Two shift coefficients, or what they are to be chosen for."""
     if isinstance(value, str):
-        if value == "standard":
-            what = _("the recommended shifts of GOST 16532 are not in this program")
-            raise Problem(what, _("give [x1, x2] from the standard, or another purpose"))
         if value not in PURPOSES:
             what = _("{value} is no purpose of shifts").format(value=value_text(value))
             raise Problem(what, nearest(value, list(PURPOSES)))
@@ -133,6 +134,14 @@ class Rack(DescriptionPart):
         most = self.clearance / (1 - math.sin(self.pressure_angle))
         return min(0.38, most) if self.fillet is None else self.fillet
 
+    @property
+    def is_standard(self) -> bool:
+        """Whether it is the rack of GOST 13755: 20 deg, h_a* 1, c* 0.25, rho_f* 0.38."""
+        own = (self.pressure_angle, self.addendum, self.clearance)
+        # The standard rounds its fillet: 0.37994 is what the clearance holds.
+        same_fillet = math.isclose(self.fillet_radius, 0.38, abs_tol=1e-3)
+        return same_fillet and all(map(math.isclose, own, (math.radians(20), 1.0, 0.25)))
+
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
         most = self.clearance / (1 - math.sin(self.pressure_angle))
@@ -161,7 +170,10 @@ class GearPair(DescriptionPart):
     module : m of the normal section [m]
     teeth : of pinion and wheel; the second may be "rack"
     internal : whether the second wheel has its teeth inside
-    shifts : x_1 and x_2, or what they are chosen for ("no undercut", "equal sliding", "least sliding", "strength")
+    shifts : x_1 and x_2, or what they are chosen for ("no undercut", "equal sliding", "least sliding", "strength",
+        "standard": as GOST 16532-70 recommends; its bounds of the numbers of teeth are those of textbooks and were not
+        compared with the printed standard)
+    application : "power" or "kinematic", with shifts = "standard" alone; "power" where it is not given
     centre_distance : [m]; the sum of the shifts follows from it
     helix_angle : beta [rad]
     rack : Rack
@@ -191,6 +203,7 @@ class GearPair(DescriptionPart):
     teeth: Annotated[Teeth, PlainValidator(read_teeth)]
     internal: Flag = False
     shifts: Annotated[tuple[float, float] | Purpose, PlainValidator(read_shifts)] | None = None
+    application: Annotated[Application, choice(*APPLICATIONS)] | None = None
     centre_distance: Annotated[float, quantity("length", positive)] | None = None
     helix_angle: Annotated[float, quantity("angle", _read_helix)] = 0.0
     rack: Rack = Rack()
@@ -251,6 +264,11 @@ class GearPair(DescriptionPart):
             return self.shifts
         return "no undercut" if self.shifts is None else None
 
+    @property
+    def intended_application(self) -> Application:
+        """What the pair is for: power, where it does not say so."""
+        return self.application or "power"
+
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
         first, second = self.teeth
@@ -267,7 +285,26 @@ class GearPair(DescriptionPart):
             raise Problem(
                 what, _("remove one of them, or give a purpose of the shifts"), ("centre_distance",)
             )
+        if self.application is not None and self.shifts != STANDARD:
+            what = _("the application matters to recommended shifts alone")
+            raise Problem(what, _('remove it, or give shifts = "standard"'), ("application",))
+        if self.shifts == STANDARD:
+            self._check_recommendation()
         return self
+
+    def _check_recommendation(self) -> None:
+        """Refuse pairs for which GOST 16532-70 recommends no shifts, whatever their numbers of teeth."""
+        what = _("GOST 16532 recommends shifts of spur external pairs alone")
+        repair = _("give [x1, x2], or another purpose")
+        first, second = self.teeth
+        if second == RACK or self.internal or self.helix_angle:
+            raise Problem(what, repair, ("shifts",))
+        if not self.rack.is_standard:
+            what = _("GOST 16532 recommends shifts for the reference rack of GOST 13755 alone")
+            raise Problem(what, _("remove rack, or give [x1, x2]"), ("shifts",))
+        if isinstance(second, int) and first > second:
+            what = _("GOST 16532 recommends shifts of a pinion that is no greater than the wheel")
+            raise Problem(what, _("write the smaller number of teeth first"), ("teeth",))
 
 
 GEAR_PAIRS = DescriptionFiles(KIND, lambda _tables, _where: GearPair)

@@ -58,7 +58,16 @@ from centrode.model.follower_cam import (
     Tool,
 )
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
-from centrode.model.gear_pairs import FEWEST_TEETH, KIND, MOST_TEETH, PURPOSES, RACK, GearPair, Rack
+from centrode.model.gear_pairs import (
+    APPLICATIONS,
+    FEWEST_TEETH,
+    KIND,
+    MOST_TEETH,
+    PURPOSES,
+    RACK,
+    GearPair,
+    Rack,
+)
 from centrode.model.gear_trains import FEWEST_TEETH as FEWEST_IN_TRAIN
 from centrode.model.gear_trains import KIND as TRAIN_KIND
 from centrode.model.gear_trains import (
@@ -779,6 +788,7 @@ GEAR_PAIR_PROPERTIES: dict[type[DescriptionPart], Schema] = {
         },
         "internal": _FLAG,
         "shifts": {"anyOf": [list_of(AMOUNT, 2, 2), {"enum": list(PURPOSES)}]},
+        "application": {"enum": list(APPLICATIONS)},
         "centre_distance": above_zero("length"),
         "helix_angle": quantity_schema("angle"),
         "rack": reference_to(Rack),

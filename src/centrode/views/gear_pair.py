@@ -53,6 +53,7 @@ from centrode.views.gear_pair_chapters import (
     contour_chapter,
     data_chapter,
     geometry_chapter,
+    recommendation_text,
     teeth_chapter,
 )
 
@@ -70,6 +71,7 @@ PURPOSES = {
     "equal sliding": Sentence("chosen for equal specific sliding"),
     "least sliding": Sentence("chosen for the least specific sliding"),
     "strength": Sentence("chosen for the flattest flanks at the pitch point"),
+    "standard": Sentence("recommended by GOST 16532"),
 }
 CURVES = {
     "mesh": Sentence("no mesh without play"),
@@ -170,6 +172,8 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
     if described.purpose is not None:
         shifts = Sentence("{shifts}, {purpose}", shifts=shifts, purpose=PURPOSES[described.purpose])
     yield Fact(Sentence("shift coefficients"), shifts)
+    if results.recommendation is not None:
+        yield Fact(Sentence("recommendation for"), recommendation_text(results.recommendation, described))
     yield Fact(Sentence("working pressure angle"), Number(pair.working_angle, "rad"))
     if pair.kind != "rack":
         distance = Sentence(

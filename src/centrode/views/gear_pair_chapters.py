@@ -24,7 +24,9 @@ from centrode.sheets.texts import NOTHING, Expression, Factor, Joined, Leaf, Num
 
 if TYPE_CHECKING:
     from centrode.gears.pair_geometry import GearWheel, PairGeometry
+    from centrode.gears.recommended_shifts import RecommendedRow
     from centrode.gears.results import GearPairResults
+    from centrode.model.gear_pairs import GearPair
 
 Line = tuple[Leaf, ...]
 INV = 'op("inv")'
@@ -53,6 +55,9 @@ def data_chapter(results: GearPairResults, purpose: Text | None) -> Chapter:
     if purpose is not None:
         shifts = Sentence("{shifts}, {purpose}", shifts=shifts, purpose=purpose)
     facts.append(Fact(Sentence("shift coefficients"), shifts))
+    if results.recommendation is not None:
+        recommended = recommendation_text(results.recommendation, described)
+        facts.append(Fact(Sentence("recommendation for"), recommended))
     if described.centre_distance is not None:
         facts.append(Fact(Sentence("centre distance"), _size(described.centre_distance)))
     if described.width is not None:
@@ -62,6 +67,30 @@ def data_chapter(results: GearPairResults, purpose: Text | None) -> Chapter:
     if described.moment is not None:
         facts.append(Fact(Sentence("moment on the pinion"), Number(described.moment, "N m")))
     return Chapter(Sentence("Data"), (Section(NOTHING, (FactTable(tuple(facts), Sentence("Gear pair")),)),))
+
+
+def recommendation_text(row: RecommendedRow, described: GearPair) -> Text:
+    """Which pairs the row of GOST 16532 is for that gave the shifts."""
+    power = row.application == "power"
+    parts: list[Text] = [Sentence("power transmission") if power else Sentence("kinematic transmission")]
+    if described.centre_distance is None:
+        parts.append(Sentence("centre distance not given"))
+    elif "shifted" in row.distances:
+        above, most = map(Number, row.sums)
+        parts.append(Sentence("sum of the shifts above {above}, at most {most}", above=above, most=most))
+    else:
+        parts.append(Sentence("centre distance without shifts"))
+    least, greatest = row.pinion
+    if math.isfinite(greatest):
+        ends = {"least": Number(least), "most": Number(greatest)}
+        parts.append(Sentence("pinion of {least} to {most} teeth", **ends))
+    elif least:
+        parts.append(Sentence("pinion of {least} teeth or more", least=Number(least)))
+    if row.least_wheel:
+        parts.append(Sentence("wheel of {least} teeth or more", least=Number(row.least_wheel)))
+    if row.least_ratio:
+        parts.append(Sentence("ratio of {least} or more", least=Number(row.least_ratio)))
+    return Joined(tuple(parts), "; ")
 
 
 def _size(value: float, digits: str = ".7g") -> Number:
