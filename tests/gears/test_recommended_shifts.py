@@ -290,8 +290,8 @@ def test_notes_of_recommended_pairs(teeth: tuple[int, int], application: str, no
 
 
 def test_a_row_that_fails_is_reported_as_every_pair() -> None:
-    """A pinion of 7 teeth with x_1 = 0.5 has pointed teeth; the row of sums has no bound of teeth."""
-    results = ct.gear_pair(described((7, 60), "power", distance_of((7, 60), 0.5)))
+    """A pinion of 6 teeth with x_1 = 0.5 has pointed teeth; the row of sums has no bound of teeth."""
+    results = ct.gear_pair(described((6, 60), "power", distance_of((6, 60), 0.5)))
     assert "pointed" in {fault.kind for fault in results.faults}
 
 
