@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
     from centrode.render.document.blocks import Report
 
 # What they import is too much for a list of commands.
-_options, _writing, _outline = (
+_options, _writing, _outline, _aside = (
     functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
-    for name in ("report.study", "report.files", "render.document.outline")
+    for name in ("report.study", "report.files", "render.document.outline", "report.side_processes")
 )
 
 
@@ -115,7 +116,9 @@ _options, _writing, _outline = (
     metavar=mark("SHARE"),
     help=mark("Greatest change of a length over itself, or of a coordinate over the greatest length (0.3)."),
 )
+@click.pass_obj
 def report(
+    ours: bool | None,
     description: str,
     out: Path | None,
     formats: str | None,
@@ -156,7 +159,9 @@ def report(
         )
     if isinstance(described, ct.Mechanism):
         echo_values(described, *(("--at", place) for place in places))
-    with output.output_folder(folder) as draft, Progress() as progress:
+    # a fork is safe where nobody but this program has begun threads
+    aside = _aside().side_processes() if ours else nullcontext()
+    with output.output_folder(folder) as draft, Progress() as progress, aside:
         with about(description):
             made = ct.report(described, options, name=Path(description).stem, said=progress.say)
         ct.write_report(
