@@ -196,7 +196,8 @@ class Synthesis(DescriptionPart):
     formula : y(x) of a function, over x
     swings : of crank and rocker [rad] over the range of a function
     timing : whether crank angles are free, given, or given but for their zero
-    place : whether the mechanism may stand anywhere, or only where `free` leaves it
+    place : whether the mechanism may stand anywhere, or only where `free` leaves it; the latter is the default of the
+        links of a file
     closed : whether a path is closed; None: as its points look
     exact : of a function: how many precision points, None for the least greatest error
     hinges : given fixed hinges [m] of three poses
@@ -260,6 +261,11 @@ class Synthesis(DescriptionPart):
             )
         object.__setattr__(self, "targets", self._read_targets())
         return self
+
+    @property
+    def has_free_place(self) -> bool:
+        """Whether the mechanism may stand anywhere: links of a file stand where they are, unless the file says so."""
+        return self.place == "free" and (self.topology is not None or "place" in self.model_fields_set)
 
     @property
     def rows(self) -> Rows:
