@@ -122,10 +122,12 @@ def _ratio(value: object) -> float:
 
 
 class PivotBox(DescriptionPart):
-    """Where fixed hinges may stand [m]."""
+    """Where fixed hinges may stand: x and y [m] in the plane, longitude and latitude [rad] on the sphere."""
 
     x: Annotated[Interval, _interval_of("length")] | None = None
     y: Annotated[Interval, _interval_of("length")] | None = None
+    longitude: Annotated[Interval, _interval_of("angle")] | None = None
+    latitude: Annotated[Interval, _interval_of("angle")] | None = None
 
 
 class Constraints(DescriptionPart):
@@ -339,6 +341,10 @@ def _check_keys(wanted: Synthesis) -> None:
         if foreign or unused:
             what = _('"{key}" means nothing to kind = "{kind}"').format(key=key, kind=wanted.kind)
             raise Problem(what, _("remove it"), (key,))
+    pivots = wanted.constraints.pivots
+    if wanted.topology not in SPHERICAL and (pivots.longitude is not None or pivots.latitude is not None):
+        what = _("in the plane fixed hinges have no longitude and latitude")
+        raise Problem(what, _("give x and y"), ("constraints", "pivots"))
     if wanted.hinges is not None and isinstance(wanted.targets, list | tuple) and len(wanted.targets) != 3:
         what = _("given hinges need three poses, got {count}").format(count=len(wanted.targets))
         raise Problem(what, _("give three, or remove hinges"), ("hinges",))
