@@ -199,3 +199,99 @@ def test_pivots_of_fixed_points() -> None:
         synthesise(kind="path", targets=targets, constraints={"pivots": {"x": [-1, 1.2]}})
     kept = synthesise(kind="path", targets=targets, answers=1, constraints={"pivots": {"x": [-1, 9.5]}})
     assert 1.5 <= kept.mechanism.frame.points["D"][0] <= 2.8
+
+
+MOVED_BY = 0.7 * np.exp(2.1j), 3 - 5j
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_moved_copy_of_a_path(published, sense: int) -> None:
+    """The path of the published linkage, made smaller, turned and moved, returns it but for that similarity."""
+    factor, shift = MOVED_BY
+    places = published.position.sel(point="P").to_numpy()[2:70:5] @ np.array([1, 1j])
+    targets = (factor * places + shift)[::sense]
+    rows = np.column_stack([targets.real, targets.imag]).tolist()
+    best = synthesise(kind="path", point="P", targets=rows, place="free", answers=1).answers[0]
+    size = float(np.abs(targets - targets.mean()).max())
+    # the written answer, read again and moved: nothing of the search is left in it
+    written = ct.parse_mechanism(ct.mechanism_text(best.mechanism))
+    met = ct.motion(written, at=list(best.drive)).position.sel(point="P").to_numpy() @ np.array([1, 1j])
+    assert float(np.sqrt(np.mean(np.abs(met - targets) ** 2))) < 1e-8 * size
+    assert best.error == pytest.approx(float(np.sqrt(np.mean(np.abs(met - targets) ** 2))), abs=1e-12)
+    assert best.defects.none
+    for path in ("links.AB.points.B.x", "links.AB.points.P.x", "links.DB.length"):
+        assert ct.value_at(written, path) == pytest.approx(0.7 * PUBLISHED[path], rel=1e-7)
+    D, O = (complex(*written.frame.points[name]) for name in "DO")
+    assert abs(D - O - factor * 2.0) < 1e-6 and abs(O - shift) < 1e-6
+    assert ct.value_at(written, "links.OA.length") == pytest.approx(0.7, rel=1e-7)
+
+
+def placed_search(**wanted: Any) -> Any:
+    targets = [[4.0, 4.0], [3.0, 4.1], [1.0, 3.6], [0.2, 2.0], [1.5, 0.5], [3.5, 1.5]]
+    request = {"kind": "path", "targets": targets, "free": RANGES, "place": "free", **wanted}
+    return mechanism_synthesis._MechanismSearch(SYNTHESES.from_tables({**tables(), "synthesis": request}))
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_slopes_with_the_place_eliminated(closed: bool) -> None:
+    """Derivatives of the sum of squares, the best place included, against central differences."""
+    search = placed_search(closed=closed)
+    own = np.array(search.moved.own)
+    rows, slopes, _drive = search.misses(own)
+    assert (rows**2).sum() > 1e-4
+    for k in range(len(own)):
+        step = np.zeros(len(own))
+        step[k] = 1e-5
+        ahead, behind = ((search.misses(own + sign * step)[0] ** 2).sum() for sign in (1, -1))
+        wanted = 2 * slopes[:, k] @ rows
+        assert (ahead - behind) / 2e-5 == pytest.approx(wanted, rel=1e-5, abs=1e-7)
+
+
+def test_place_is_the_best_one() -> None:
+    """No similarity near the one that was found brings the curve closer, place by place along it."""
+    fine = np.linspace(0, 2 * np.pi, 20001)
+    curve = ct.motion(ct.Mechanism(**tables()), at=list(fine)).position.sel(point="P").to_numpy() @ [1, 1j]
+    factor, shift = MOVED_BY
+    noise = np.random.default_rng(3).normal(0, 0.02, (12, 2)) @ [1, 1j]
+    targets = factor * (curve[1000:19000:1500] + noise) + shift
+    search = placed_search(targets=np.column_stack([targets.real, targets.imag]).tolist(), closed=True)
+    values = search.moved.split(np.asarray(search.moved.outputs(search.moved.own)))
+    placed = search.goal.place(search.moved, values)
+
+    def cost(factor: complex, shift: complex) -> float:
+        distance = np.abs(factor * curve[None] + shift - targets[:, None])
+        return float((distance.min(axis=1) ** 2).sum())
+
+    at = placed.similarity
+    assert abs(at.factor - factor) < 0.05
+    best = cost(at.factor, at.shift)
+    # 20001 places lie up to 4e-4 m from the nearest one
+    assert best == pytest.approx(float((np.abs(placed.misses) ** 2).sum()), rel=2e-4)
+    for change in (1e-3, -1e-3, 1e-3j, -1e-3j):
+        assert cost(at.factor * (1 + change), at.shift - at.factor * change * curve.mean()) > best
+        assert cost(at.factor, at.shift + change) > best
+
+
+def test_size_and_pivots_of_a_placed_answer(published) -> None:
+    factor, shift = MOVED_BY
+    targets = factor * (published.position.sel(point="P").to_numpy()[2:70:5] @ np.array([1, 1j])) + shift
+    wanted = {
+        "kind": "path",
+        "targets": np.column_stack([targets.real, targets.imag]).tolist(),
+        "place": "free",
+    }
+    for constraints, name in (({"size": [1, 1]}, "size"), ({"pivots": {"x": [90, 99]}}, r"pivots\.x")):
+        with pytest.raises(ct.MotionError, match=f"the nearest breaks {name}"):
+            synthesise(constraints=constraints, answers=1, **wanted)
+
+
+def test_place_stands_as_it_is_unless_it_is_free() -> None:
+    assert not SYNTHESES.from_tables(
+        {**tables(), "synthesis": {"kind": "path", "targets": [[0, 0], [1, 0], [2, 1]]}}
+    ).synthesis.has_free_place
+    with pytest.raises(ct.InputError, match="the zero of the drive turns"):
+        placed_search(timing="given", targets=[[0, 0, 0], [1, 0, 1], [2, 1, 2]])
+    loaded = {**tables(), "loads": [{"kind": "force", "point": "P", "vector": [1, 0]}]}
+    request = {"kind": "path", "targets": [[0, 0], [1, 0], [2, 1]], "free": RANGES, "place": "free"}
+    with pytest.raises(ct.InputError, match="loads cannot be moved"):
+        ct.synthesise({**loaded, "synthesis": request})

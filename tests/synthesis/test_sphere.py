@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -86,7 +87,7 @@ def known_motion(crank):
 
 
 def synthesise(kind, targets, **more):
-    wanted = {"topology": "spherical-four-bar", "kind": kind, "targets": targets, **more}
+    wanted: dict[str, Any] = {"topology": "spherical-four-bar", "kind": kind, "targets": targets, **more}
     return ct.synthesise({"synthesis": wanted})
 
 
@@ -176,6 +177,15 @@ def test_functions(exact) -> None:
     [
         ({"place": "given"}, "on the sphere the place is free"),
         ({"constraints": {"size": [1, 1]}}, "on the sphere there is no such bound"),
+        ({"constraints": {"pivots": {"x": [1, 2]}}}, "give longitude and latitude"),
+        (
+            {
+                "constraints": {"pivots": {"longitude": [1, 2]}},
+                "free": {"frame.points.O.longitude": [3, 3.1]},
+            },
+            "no fixed hinge lies both in pivots and in its own range",
+        ),
+        ({"topology": "crank-rocker", "constraints": {"pivots": {"latitude": [0, 1]}}}, "give x and y"),
         ({"free": {"links.OA.length": [4, 5]}}, "an arc between 0 and 180 deg"),
         ({"free": {"frame.points.O.x": [0, 1]}}, "is not a number of this topology"),
     ],
@@ -183,3 +193,41 @@ def test_functions(exact) -> None:
 def test_refusals(more, said: str) -> None:
     with pytest.raises(ct.InputError, match=said):
         synthesise("path", [[0, 0], [0.1, 0.1], [0.2, 0.0]], **more)
+
+
+def are_within(answer, longitude, latitude) -> bool:
+    """Whether both fixed hinges of the description stand in a box, by its numbers alone."""
+    east, north = np.array([place[:2] for place in answer.mechanism.frame.points.values()]).T
+    whole = np.round((np.mean(longitude) - east) / (2 * math.pi)) * 2 * math.pi
+    inside = (east + whole >= longitude[0] - 1e-9) & (east + whole <= longitude[1] + 1e-9)
+    return bool((inside & (north >= latitude[0] - 1e-9) & (north <= latitude[1] + 1e-9)).all())
+
+
+def test_hinges_in_a_box_of_longitude_and_latitude() -> None:
+    """The known linkage has its hinges there, and is recovered."""
+    crank = np.linspace(0.3, 5.2, 12)
+    points, _heading = known_motion(crank)
+    longitude = [0.2, 1.4]
+    constraints = {"crank": "OA", "pivots": {"longitude": longitude, "latitude": [-0.2, 0.3]}}
+    found = synthesise("path", rows_of(points), closed=False, constraints=constraints)
+    assert found.answers[0].error < 1e-8
+    check_met(found.answers[0], points, 1e-7)
+    assert all(are_within(answer, longitude, [-0.2, 0.3]) for answer in found.answers)
+
+
+def test_hinges_of_poses_in_a_box() -> None:
+    points, heading = known_motion(np.linspace(0.3, 1.9, 3))
+    longitude, latitude = [-0.6, 1.4], [-0.4, 0.5]
+    free = synthesise("motion", rows_of(points, heading), answers=8)
+    assert not all(are_within(answer, longitude, latitude) for answer in free.answers)
+    constraints = {"pivots": {"longitude": longitude, "latitude": latitude}}
+    for answer in synthesise("motion", rows_of(points, heading), answers=3, constraints=constraints).answers:
+        check_met(answer, points, 1e-9)
+        assert are_within(answer, longitude, latitude)
+
+
+def test_a_function_has_no_box() -> None:
+    wanted = {"topology": "spherical-four-bar", "kind": "function", "formula": "x", "x": [1, 2]}
+    constraints = {"pivots": {"longitude": [0, 1]}}
+    with pytest.raises(ct.InputError, match="nothing of where the linkage stands"):
+        ct.synthesise({"synthesis": {**wanted, "swings": ["60 deg", "90 deg"], "constraints": constraints}})

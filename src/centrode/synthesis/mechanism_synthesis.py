@@ -23,14 +23,17 @@ from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import value_text
+from centrode.model.similarity import Similarity, apply_similarity, check_similarity
 from centrode.model.units import read_quantity
 from centrode.sweeps.designs import kind_of
 from centrode.sweeps.solver import Solver, solver
 from centrode.synthesis.answers import CHECKED_PLACES, Answer, Defects, SynthesisResults, box_around
+from centrode.synthesis.curve_places import PlacedCurve, SampledCurve, ordered_places, place_curve
 from centrode.synthesis.four_bars import Array, Complex
 from centrode.synthesis.improvement import describe_moved
 from centrode.synthesis.measures import Measure, hermite, measure_of
 from centrode.synthesis.mechanism_constraints import link_ends, mechanism_constraints
+from centrode.synthesis.path_synthesis import is_closed_path
 from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import Synthesis, SynthesisTask
 
@@ -39,6 +42,8 @@ STARTS = 400
 REFINED = 24
 """The best of them go on."""
 SAMPLES = 181
+FINE_SAMPLES = 1441
+"""At the end of a search whose place is free: what cubics between samples leave falls with the fourth power."""
 SOFT, SHARP = 30.0, 1e4
 """Weights, at first and at the end, of a constraint that is exceeded by its own size against a target that is missed by
 the size of the path: what is left of it falls with the square."""
@@ -60,35 +65,51 @@ class _Wanted:
     ----------
     at : values of the drive of targets that have some
     size : of the misses, in which constraints are weighed
+    place : of a path whose place is free: how its curve, by the outputs, is moved onto the targets
     """
 
     outputs: Mapping[str, str]
     at: Array | None
     size: float
     misses: Callable[[Solver, Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]
+    place: Callable[[Solver, Mapping[str, Array]], PlacedCurve] | None = None
 
 
 class _MechanismSearch:
     """What is wanted of a mechanism of a file, made into misses; another process makes its own from the request."""
 
-    def __init__(self, task: SynthesisTask) -> None:
+    def __init__(self, task: SynthesisTask, samples: int | None = None) -> None:
         wanted, mechanism = task.synthesis, task.mechanism
         assert mechanism is not None
-        self.task = task
+        self.task, self.samples = task, SAMPLES if samples is None else samples
         self.names, self.low, self.high = _ranges(mechanism, wanted)
-        _narrow_pivots(mechanism, wanted, self.names, self.low, self.high)
         self.goal = _goal(mechanism, wanted)
-        self.kept = mechanism_constraints(mechanism, wanted.constraints)
+        constraints = wanted.constraints
+        if self.goal.place is None:
+            _narrow_pivots(mechanism, wanted, self.names, self.low, self.high)
+        else:
+            # where it stands and how large it is is known of an answer only
+            constraints = constraints.model_copy(update={"size": None})
+        self.kept = mechanism_constraints(mechanism, constraints)
         outputs, kept, at = dict(self.goal.outputs), dict(self.kept.outputs), self.goal.at
         if at is None:
-            self.moved = solver(mechanism, self.names, SAMPLES, outputs={**outputs, **kept})
+            self.moved = solver(mechanism, self.names, self.samples, outputs={**outputs, **kept})
         else:
             self.moved = solver(mechanism, self.names, None, at=at, outputs=outputs)
         # targets with times say nothing of what is between them: constraints have the whole motion
-        self.whole = solver(mechanism, self.names, SAMPLES, outputs=kept) if at is not None and kept else None
+        self.whole = (
+            solver(mechanism, self.names, self.samples, outputs=kept) if at is not None and kept else None
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _MechanismSearch, (self.task,)
+        return _MechanismSearch, (self.task, self.samples)
+
+    def similarity(self, values: Array) -> Similarity | None:
+        """What brings the mechanism of these values to its targets; None where its place is given."""
+        if self.goal.place is None:
+            return None
+        numbers, _none = _without_slopes(self.moved, values)
+        return self.goal.place(self.moved, numbers).similarity
 
     def misses(self, values: Array) -> tuple[Array, Array, Array]:
         """Misses of the targets alone, their derivatives, values of the drive at the targets; raises _BrokenMotion."""
@@ -164,7 +185,8 @@ def mechanism_answers(
         progress(0.3 + 0.6 * len(fitted) / len(shares))
     found = [one for index in sorted(fitted) for one in fitted[index]]
     found.sort(key=lambda one: one[0])
-    answers, broken = _distinct_answers(search, found)
+    fine = search if search.goal.place is None else _MechanismSearch(task, FINE_SAMPLES)
+    answers, broken = _distinct_answers(fine, found)
     progress(1.0)
     if not answers:
         what = _("no mechanism that was found keeps everything that is required")
@@ -189,6 +211,8 @@ def _distinct_answers(
         if any(np.abs((values - other) / width).max() < 1e-4 for other in seen):
             continue
         seen.append(values)
+        if search.goal.place is not None:
+            _cost, values = _descend(search, values, SHARP)
         answer, why = _answer(search, values)
         if answer is None:
             broken.append(why)
@@ -270,6 +294,8 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
     rows = np.array(wanted.rows, dtype=np.float64)
     targets = rows[:, :2]
     size = float(np.linalg.norm(targets - targets.mean(axis=0), axis=1).max())
+    if wanted.has_free_place:
+        return _placed_goal(mechanism, wanted, targets @ np.array([1.0, 1j]), size)
     if wanted.timing == "given":
         outputs = {"x": f"position_{point}_x", "y": f"position_{point}_y"}
 
@@ -288,7 +314,7 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
         moved: Solver, values: Mapping[str, Array], by: Mapping[str, Array]
     ) -> tuple[Array, Array, Array]:
         curve = np.column_stack([values["x"], values["y"]])
-        cells, part = _ordered_places(curve, targets, wanted.constraints.order)
+        cells, part = ordered_places(curve, targets, wanted.constraints.order)
         pace = moved.time[1] - moved.time[0]
 
         def at(name: str, rate: str, numbers: Mapping[str, Array], factors: Array) -> Array:
@@ -327,52 +353,42 @@ def _path_goal(mechanism: Mechanism, wanted: Synthesis) -> _Wanted:
     return _Wanted(outputs, None, size, nearest)
 
 
-def _ordered_places(
-    curve: Array, targets: Array, ordered: bool
-) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], Array]:
-    """Cells (n,) of a sampled curve that are nearest to targets, and the parts (n,) of the cells.
+def _placed_goal(mechanism: Mechanism, wanted: Synthesis, targets: Complex, size: float) -> _Wanted:
+    """A path on which the whole mechanism is turned, scaled and shifted as it fits best."""
+    check_similarity(mechanism, "[synthesis] place")
+    if wanted.timing != "free":
+        what = _("the zero of the drive turns with a mechanism whose place is free")
+        raise InputError("[synthesis] timing", what, _('write timing = "free", or place = "given"'))
+    point, closed, ordered = wanted.point, is_closed_path(wanted, targets), wanted.constraints.order
+    if closed and abs(targets[0] - targets[-1]) <= 1e-9 * size:
+        # a point that stands twice would be passed twice
+        targets = targets[:-1]
+    outputs = {
+        "x": f"position_{point}_x", "y": f"position_{point}_y", "u": f"velocity_{point}_x", "v": f"velocity_{point}_y",
+    }  # fmt: skip
 
-    In the order of the targets, over less than a turn: the best of all such choices (dynamic programming), run through
-    in either sense.
-    """
-    steps = np.diff(curve, axis=0)
-    square = np.maximum((steps**2).sum(axis=1), 1e-300)
-    away = targets[:, None] - curve[None, :-1]
-    part = np.clip((away * steps).sum(axis=-1) / square, 0.0, 1.0)
-    distance = ((away - part[..., None] * steps) ** 2).sum(axis=-1)
-    count = np.arange(len(targets))
-    if not ordered:
-        cells = np.argmin(distance, axis=1)
-        return cells, part[count, cells]
-    best, chosen = math.inf, np.zeros(len(targets), dtype=np.int64)
-    places = len(steps)
-    closes = float(np.linalg.norm(curve[0] - curve[-1])) < 1e-6 * float(np.abs(curve).max() + 1e-300)
-    for sense in (1, -1):
-        own = distance[:, ::sense]
-        for cut in range(0, places, max(1, places // 12)) if closes else (0,):
-            cost, cells = _monotone(np.roll(own, -cut, axis=1))
-            if cost < best:
-                best, chosen = cost, (cells + cut) % places
-                chosen = chosen if sense > 0 else places - 1 - chosen
-    return chosen, part[count, chosen]
+    def curve_of(moved: Solver, values: Mapping[str, Array]) -> SampledCurve:
+        pace = moved.time[1] - moved.time[0]
+        return SampledCurve(values["x"] + 1j * values["y"], pace * (values["u"] + 1j * values["v"]))
 
+    def place(moved: Solver, values: Mapping[str, Array]) -> PlacedCurve:
+        return place_curve(curve_of(moved, values), targets, closed, ordered)
 
-def _monotone(distance: Array) -> tuple[float, np.ndarray[tuple[int], np.dtype[np.int64]]]:
-    """Least sum of distances (n, places) over places that do not decrease, and the places (n,)."""
-    n, places = distance.shape
-    total = distance[0]
-    before = np.zeros((n, places), dtype=np.int64)
-    for row in range(1, n):
-        run = np.minimum.accumulate(total)
-        # the last place at which the running minimum was lowered
-        lowered = np.concatenate([[True], total[1:] < run[:-1]])
-        before[row] = np.maximum.accumulate(np.where(lowered, np.arange(places), 0))
-        total = run + distance[row]
-    cells = np.zeros(n, dtype=np.int64)
-    cells[-1] = int(np.argmin(total))
-    for row in range(n - 1, 0, -1):
-        cells[row - 1] = before[row, cells[row]]
-    return float(total.min()), cells
+    def misses(
+        moved: Solver, values: Mapping[str, Array], by: Mapping[str, Array]
+    ) -> tuple[Array, Array, Array]:
+        curve, changes = curve_of(moved, values), curve_of(moved, by)
+        placed = place_curve(curve, targets, closed, ordered)
+        cells, weights, _slopes = curve.weights(placed.places)
+        weights = weights[:, :, None]
+        change = weights[0] * changes.points[cells] + weights[1] * changes.tangents[cells]
+        change = change + weights[2] * changes.points[cells + 1] + weights[3] * changes.tangents[cells + 1]
+        slopes = placed.slopes(curve.at(placed.places)[0], change)
+        steps = moved.parameter[1] - moved.parameter[0]
+        drive = moved.parameter[0] + steps * placed.places
+        return placed.project(placed.misses[:, None])[:, 0], slopes, drive
+
+    return _Wanted(outputs, None, size, misses, place)
 
 
 def _function_goal(wanted: Synthesis) -> _Wanted:
@@ -513,9 +529,17 @@ def _answer(search: _MechanismSearch, values: Array) -> tuple[Answer | None, str
     missed, _by, drive = search.misses(values)
     try:
         mechanism = describe_moved(search.moved, dict(zip(search.names, values.tolist(), strict=True)))
+        similarity = search.similarity(values)
+        if similarity is not None:
+            mechanism = apply_similarity(mechanism, similarity)
         data = motion(mechanism, CHECKED_PLACES)
     except CentrodeError as failure:
         return None, failure.what
+    if similarity is not None:
+        # the same part of the same motion, counted as the moved description counts it
+        instants = np.asarray(mechanism.motion_parameter.instants(data))
+        ends, own = instants[[0, -1]], search.moved.parameter[[0, -1]]
+        drive = ends[0] + (drive - own[0]) * (ends[1] - ends[0]) / (own[1] - own[0])
     branch = bool((data.status.to_numpy() != int(Status.OK)).any())
     places = data.position.to_numpy()
     size = box_around(mechanism, places)
@@ -526,7 +550,7 @@ def _answer(search: _MechanismSearch, values: Array) -> tuple[Answer | None, str
     if wanted.kind == "path":
         curve = _planar(data.position.sel(point=wanted.point).to_numpy())
         met = _planar(motion(mechanism, at=list(drive)).position.sel(point=wanted.point).to_numpy())
-        rows = np.array(wanted.rows)
+        rows = np.array(wanted.rows)[: len(met)]
         errors = np.abs(met - rows[:, 0] - 1j * rows[:, 1])
         order = not _in_order(drive)
     if wanted.kind == "strokes":

@@ -97,7 +97,7 @@ def path_answers(
     is_motion = wanted.kind == "motion"
     directions = np.unwrap(rows[:, 2]) if is_motion else None
     drive = rows[:, 3 if is_motion else 2] if wanted.timing != "free" else None
-    closed = _is_closed(wanted, points) and drive is None and not is_motion
+    closed = is_closed_path(wanted, points) and drive is None and not is_motion
     if closed and abs(points[0] - points[-1]) <= 1e-9 * np.abs(points - points.mean()).max():
         points = points[:-1]
     middle = complex(points.mean())
@@ -122,7 +122,7 @@ def path_answers(
     return SynthesisResults(task, tuple(answers), points, closed, examined=examined, complete=not stop())
 
 
-def _is_closed(wanted: Synthesis, points: Complex) -> bool:
+def is_closed_path(wanted: Synthesis, points: Complex) -> bool:
     """Whether a path is closed: as it is given, else where its ends are no farther apart than its points elsewhere."""
     if wanted.closed is not None:
         return wanted.closed

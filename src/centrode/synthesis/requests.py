@@ -122,10 +122,12 @@ def _ratio(value: object) -> float:
 
 
 class PivotBox(DescriptionPart):
-    """Where fixed hinges may stand [m]."""
+    """Where fixed hinges may stand: x and y [m] in the plane, longitude and latitude [rad] on the sphere."""
 
     x: Annotated[Interval, _interval_of("length")] | None = None
     y: Annotated[Interval, _interval_of("length")] | None = None
+    longitude: Annotated[Interval, _interval_of("angle")] | None = None
+    latitude: Annotated[Interval, _interval_of("angle")] | None = None
 
 
 class Constraints(DescriptionPart):
@@ -196,7 +198,8 @@ class Synthesis(DescriptionPart):
     formula : y(x) of a function, over x
     swings : of crank and rocker [rad] over the range of a function
     timing : whether crank angles are free, given, or given but for their zero
-    place : whether the mechanism may stand anywhere, or only where `free` leaves it
+    place : whether the mechanism may stand anywhere, or only where `free` leaves it; the latter is the default of the
+        links of a file
     closed : whether a path is closed; None: as its points look
     exact : of a function: how many precision points, None for the least greatest error
     hinges : given fixed hinges [m] of three poses
@@ -260,6 +263,11 @@ class Synthesis(DescriptionPart):
             )
         object.__setattr__(self, "targets", self._read_targets())
         return self
+
+    @property
+    def has_free_place(self) -> bool:
+        """Whether the mechanism may stand anywhere: links of a file stand where they are, unless the file says so."""
+        return self.place == "free" and (self.topology is not None or "place" in self.model_fields_set)
 
     @property
     def rows(self) -> Rows:
@@ -333,6 +341,10 @@ def _check_keys(wanted: Synthesis) -> None:
         if foreign or unused:
             what = _('"{key}" means nothing to kind = "{kind}"').format(key=key, kind=wanted.kind)
             raise Problem(what, _("remove it"), (key,))
+    pivots = wanted.constraints.pivots
+    if wanted.topology not in SPHERICAL and (pivots.longitude is not None or pivots.latitude is not None):
+        what = _("in the plane fixed hinges have no longitude and latitude")
+        raise Problem(what, _("give x and y"), ("constraints", "pivots"))
     if wanted.hinges is not None and isinstance(wanted.targets, list | tuple) and len(wanted.targets) != 3:
         what = _("given hinges need three poses, got {count}").format(count=len(wanted.targets))
         raise Problem(what, _("give three, or remove hinges"), ("hinges",))

@@ -176,6 +176,21 @@ def _slopes(targets: Targets, variables: Array, side: Array, angles: Array) -> t
 SPHERE = FitKernel(_residuals, _slopes)
 
 
+def hinges_within(
+    linkages: Array, longitude: tuple[float, float] | None, latitude: tuple[float, float] | None
+) -> Booleans:
+    """Which linkages (lanes, 9) have O and D within least and greatest longitudes and latitudes [rad]."""
+    inside: Booleans = np.full(len(linkages), True)
+    for lon, lat in ((O_LON, O_LAT), (D_LON, D_LAT)):
+        east, north = longitudes(unit_vectors(linkages[:, lon], linkages[:, lat]))
+        if longitude is not None:
+            # counted on from the least one, a turn of which is the same meridian
+            inside &= np.mod(east - longitude[0], 2 * np.pi) <= longitude[1] - longitude[0]
+        if latitude is not None:
+            inside &= (north >= latitude[0]) & (north <= latitude[1])
+    return inside
+
+
 def in_range(linkage: Array, attachment: float) -> tuple[Array, float]:
     """The same linkage (9,) with latitudes up to a right angle, and its attachment.
 

@@ -46,6 +46,7 @@ from centrode.synthesis.spherical_four_bars import (
     STEP,
     coupler_headings,
     coupler_points,
+    hinges_within,
     in_range,
     longitudes,
     rocker_angles_from_frame,
@@ -95,11 +96,7 @@ def spherical_answers(
         No linkage keeps what is required.
     """
     wanted = task.synthesis
-    for name in ("pivots", "size"):
-        given = getattr(wanted.constraints, name)
-        if given is not None and (name == "size" or given.x is not None or given.y is not None):
-            what = _("on the sphere there is no such bound")
-            raise InputError(f"[synthesis.constraints] {name}", what, _("remove it"))
+    _check_bounds(wanted)
     if wanted.place == "given":
         raise InputError("[synthesis] place", _("on the sphere the place is free"), _("remove it"))
     if wanted.kind == "function":
@@ -112,6 +109,20 @@ def spherical_answers(
     ):
         return _pose_answers(task, progress, stop)
     return _path_answers(task, progress, stop, processes)
+
+
+def _check_bounds(wanted: Synthesis) -> None:
+    """Refuse bounds that the sphere, or a function on it, does not have."""
+    pivots, what = wanted.constraints.pivots, _("on the sphere there is no such bound")
+    if wanted.constraints.size is not None:
+        raise InputError("[synthesis.constraints] size", what, _("remove it"))
+    where = "[synthesis.constraints] pivots"
+    if pivots.x is not None or pivots.y is not None:
+        raise InputError(where, what, _("give longitude and latitude"))
+    bounded = pivots.longitude is not None or pivots.latitude is not None
+    if wanted.kind == "function" and bounded:
+        what = _("a function says nothing of where the linkage stands")
+        raise InputError(where, what, _("remove it"))
 
 
 # Paths, and many poses in the least squares sense
@@ -178,9 +189,31 @@ def _problem(wanted: Synthesis, targets: Targets) -> FitProblem:
         if low[k] > high[k]:
             what = _("the range goes from {low:g} to {high:g}").format(low=ends[0], high=ends[1])
             raise InputError(where, what, _("a length is an arc between 0 and 180 deg"))
+    _narrow_hinges(wanted, low, high)
     free = np.ones(VARIABLES, dtype=bool)
     free[PHASE], free[ATTACHMENT] = wanted.timing == "phase", targets.directions is not None
     return FitProblem(targets, free, low, high, _hinges_of(wanted.constraints), kernel=SPHERE)
+
+
+def _narrow_hinges(wanted: Synthesis, low: Array, high: Array) -> None:
+    """Ranges of the fixed hinges put within [synthesis.constraints] pivots; InputError where nothing is left."""
+    pivots = wanted.constraints.pivots
+    for name, box, variables in (
+        ("longitude", pivots.longitude, (O_LON, D_LON)),
+        ("latitude", pivots.latitude, (O_LAT, D_LAT)),
+    ):
+        if box is None:
+            continue
+        for k in variables:
+            low[k], high[k] = max(low[k], box[0]), min(high[k], box[1])
+            if low[k] > high[k]:
+                what = _("no fixed hinge lies both in pivots and in its own range")
+                where = f"[synthesis.constraints] pivots.{name}"
+                raise InputError(where, what, _("widen one of them"))
+    if pivots.longitude is not None:
+        # beyond a pole a point has another longitude
+        for k in (O_LAT, D_LAT):
+            low[k], high[k] = max(low[k], -np.pi / 2), min(high[k], np.pi / 2)
 
 
 @dataclass(frozen=True)
@@ -280,6 +313,11 @@ def _candidates(wanted: Synthesis, problem: FitProblem, closed: bool) -> FitLane
         variables[row, PHASE] = phase
         crank[row] = angles - phase
     side = sides[[offers[place][0] for place in order.tolist()]]
+    for k in (O_LON, D_LON):
+        if np.isfinite([problem.low[k], problem.high[k]]).all():
+            # a whole turn of a longitude is the same place, and may lie in the range
+            middle = (problem.low[k] + problem.high[k]) / 2
+            variables[:, k] += 2 * np.pi * np.rint((middle - variables[:, k]) / (2 * np.pi))
     variables = np.clip(variables, problem.low, problem.high)
     if targets.directions is not None:
         drawn = spherical_motion(variables[:, :9], crank + variables[:, PHASE, None], side)
@@ -501,6 +539,7 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
         good &= arcs.max(axis=1) <= constraints.length_ratio * arcs.min(axis=1)
     if constraints.order:
         good &= clean
+    good &= hinges_within(linkages, constraints.pivots.longitude, constraints.pivots.latitude)
     answers: list[Answer] = []
     for k in np.lexsort((-transmission, ~clean)).tolist():
         if not good[k]:
