@@ -10,6 +10,14 @@ export interface ChartLine {
   values: ArrayLike<number>;
   x?: ArrayLike<number>; // its own abscissa
   dashed?: boolean;
+  pen?: number; // its colour; its place among the lines where none is given
+}
+const PENS = 6;
+// The pen of each line: its own, unless two that look alike would have the same.
+function pensOf(lines: ChartLine[]): number[] {
+  const own = lines.map((line, k) => (line.pen ?? k) % PENS);
+  const looks = new Set(lines.map((line, k) => `${own[k]} ${line.dashed ?? false}`));
+  return looks.size === lines.length ? own : lines.map((_line, k) => k % PENS);
 }
 export interface ChartData {
   title: string;
@@ -191,6 +199,7 @@ export class Chart {
     make("rect", { class: "box", x: LEFT, y: UPPER, width: wide - LEFT - RIGHT, height: TALL - LOWER - UPPER }, svg);
     make("text", { class: "axis", x: wide - RIGHT, y: TALL - 6, "text-anchor": "end" }, svg).textContent = symbol;
     make("text", { class: "axis", x: LEFT - 6, y: 12, "text-anchor": "end" }, svg).textContent = data.unit === "1" ? "" : data.unit;
+    const pens = pensOf(data.lines);
     data.lines.forEach((line, k) => {
       let d = "", pen = false, before = NaN;
       for (let sample = 0; sample < line.values.length; sample += 1) {
@@ -200,17 +209,17 @@ export class Chart {
         if (known) d += `${pen ? "L" : "M"}${digits(x(across))} ${digits(y(value))}`;
         pen = known;
       }
-      make("path", { class: `line line-${k % 6}${line.dashed ? " dashed" : ""}`, d }, svg);
+      make("path", { class: `line line-${pens[k]}${line.dashed ? " dashed" : ""}`, d }, svg);
     });
     this.cursor = this.seek ? make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg) : null;
-    this.dots = this.seek ? data.lines.map((_line, k) => make("circle", { class: `spot line-${k % 6}`, r: 3.5 }, svg)) : [];
+    this.dots = this.seek ? data.lines.map((_line, k) => make("circle", { class: `spot line-${pens[k]}`, r: 3.5 }, svg)) : [];
     this.place = (sample) => [x(between(abscissa, sample)), y];
     svg.setAttribute("aria-label", say("curve", { what: data.title, least: this.said(seen ? from : NaN), most: this.said(seen ? to : NaN) }));
     this.outputs = [];
     this.legend.replaceChildren(...data.lines.map((line, k) => {
       const entry = document.createElement("span"), sign = document.createElement("i"), output = document.createElement("span");
       entry.className = "entry";
-      sign.className = `line-${k % 6}`;
+      sign.className = `line-${pens[k]}${line.dashed ? " dashed" : ""}`;
       sign.ariaHidden = "true";
       this.outputs.push(output);
       entry.append(sign, this.seek ? `${line.label} = ` : line.label, output);
