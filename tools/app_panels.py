@@ -276,10 +276,11 @@ def open_window(
 
 
 def search(window: Any, kind: str) -> None:
-    """Let the page of syntheses find mechanisms of a kind; those of a path are traded off against their size."""
+    """Let the page of syntheses find mechanisms of a kind; those of a path with a trade-off."""
     window.select_option("#kind", kind)
     if kind == "path":
-        window.select_option("#trade_off", "size")
+        window.fill("#size", "")
+        window.select_option("#trade_off", "transmission")
         window.fill("#targets", POINTS)
         window.dispatch_event("#targets", "change")
     window.click("#search")
