@@ -127,8 +127,7 @@ async function begin(): Promise<void> {
     contour.replaceChildren(draw("path", { class: "inside", d: cells.join("") }),
       draw("path", { class: "axis", d: `M${low} 0H${high}M0 ${-below}V${-above}` }),
       ...got.curves.map((one) => { const drawn = draw("path", { class: looks(one), d: one.lines.map(path).join("") }); const title = draw("title", {}); title.textContent = one.label; drawn.append(title); return drawn; }), place);
-    const pixel = Math.max((high - low) / (contour.clientWidth || 400), (above - below) / (contour.clientHeight || 400));
-    const size = 13 * pixel, words: SVGElement[] = [];
+    const size = (high - low) / 28, words: SVGElement[] = [];
     const write = (x: number, y: number, text: string, anchor: string): void => {
       const written = draw("text", { x, y: -y, "font-size": size, "text-anchor": anchor });
       written.textContent = text;
