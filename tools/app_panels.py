@@ -51,37 +51,6 @@ B = "0.05 mm"
 swing = { formula = "range(angle_DB)", deviation = "0.1 deg" }
 rocker = "angle.DB"
 """
-DOOR = """title = "Door with a closer"
-[frame.points]
-O = [0, 0]
-[links.door]
-points = ["O", "A"]
-length = "0.9 m"
-mass = "25 kg"
-shape = "rod"
-angle = "80 deg"
-[[drives]]
-link = "door"
-[[loads]]
-kind = "spring"
-link = "door"
-stiffness = "8 N m/rad"
-free_angle = "-60 deg"
-[[loads]]
-kind = "friction"
-link = "door"
-value = "1.5 N m"
-static = "2 N m"
-viscous = "12 N m s/rad"
-[[stops]]
-name = "frame"
-link = "door"
-least = 0
-restitution = 0.3
-[simulation]
-duration = "10 s"
-"""
-"""A run with a stop and dry friction, as docs/how-to/door-closer.md has it."""
 DESCRIPTIONS = (
     "six-bar-press",
     "six-bar-press-run-up",
@@ -93,6 +62,8 @@ DESCRIPTIONS = (
     "spherical-four-bar",
     "double-pendulum",
     "door-closer",
+    "catapult",
+    "vibrating-screen",
 )
 """Each panel is shown of the first of these that has it."""
 AGAIN = {
@@ -100,10 +71,19 @@ AGAIN = {
     "planetary-gear-train": ("run",),
     "double-pendulum": ("equilibrium", "modes"),
     "door-closer": ("simulate", "equilibrium"),
+    "catapult": ("simulate",),
+    "vibrating-screen": ("simulate", "modes"),
 }
 """Panels that look otherwise of some descriptions."""
-PAGES = {"gears": "#facts td", "synthesis": "#answers .card"}
-"""Further pages, and what is there once they are ready."""
+PLAYED = ("simulate", "modes")
+"""Panels that move the drawing: the window around them is shown too."""
+PAGES = {
+    "gears": "#facts td",
+    "synthesis": "#answers .card",
+    "synthesis-function": "#answers .card",
+    "synthesis-strokes": "#answers .card",
+}
+"""Further pages, with what is wanted of them, and what is there once they are ready."""
 POINTS = "0 0\n40 0\n60 30\n50 60\n0 60\n-10 30"
 """Points of a path [mm] for which the page of syntheses finds mechanisms."""
 FITS = """(where) => {
@@ -173,8 +153,6 @@ def packed(text: str) -> str:
 
 def description(name: str) -> str:
     """The text of a description; the crank-rocker has limits of its dimensions."""
-    if name == "door-closer":
-        return DOOR
     return example_text(name) + (TOLERANCES if name == "crank-rocker" else "")
 
 
@@ -247,6 +225,10 @@ def look(
         file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
         picture(window, ".card.panel" if where == "#panel" else where).save(file)
         found.pictures[name, wide][language, scheme] = file
+        if name.partition("-")[0] in PLAYED:
+            around = folder / "views" / f"{name}-window-{wide}-{language}-{scheme}.png"
+            window.screenshot(path=around)
+            found.pictures[f"{name}-window", wide][language, scheme] = around
     if language != "en":
         text = window.inner_text(where)
         found.foreign[name] |= set(FOREIGN.findall(text))
@@ -293,6 +275,18 @@ def open_window(
     context.close()
 
 
+def search(window: Any, kind: str) -> None:
+    """Let the page of syntheses find mechanisms of a kind; those of a path with a trade-off."""
+    window.select_option("#kind", kind)
+    if kind == "path":
+        window.fill("#size", "")
+        window.select_option("#trade_off", "transmission")
+        window.fill("#targets", POINTS)
+        window.dispatch_event("#targets", "change")
+    window.click("#search")
+    window.locator("#answers .card").first.click()
+
+
 def walk(running: Any, address: str, found: Findings, arguments: argparse.Namespace) -> None:
     """Every panel and page in every language, by day and at night, window by window."""
     for language in arguments.languages:
@@ -313,15 +307,14 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
         for name, there in PAGES.items():
             if arguments.topics and name not in arguments.topics:
                 continue
-            where = address.replace("/?", f"/{name}?")
+            page, _hyphen, kind = name.partition("-")
+            where = address.replace("/?", f"/{page}?")
             with open_window(running, where, language, found, arguments) as window:
-                if name == "synthesis":
-                    window.fill("#targets", POINTS)
-                    window.dispatch_event("#targets", "change")
-                    window.click("#search")
+                if page == "synthesis":
+                    search(window, kind or "path")
                 window.wait_for_selector(there)
                 settle(window)
-                look_at_both(window, name, language, found, arguments, f"#{name}")
+                look_at_both(window, name, language, found, arguments, f"#{page}")
 
 
 def write_sheets(found: Findings, folder: Path) -> Iterator[Path]:

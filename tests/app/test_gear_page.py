@@ -15,6 +15,8 @@ from report.browser import browser
 from .bench import bench
 from .served import Served, served
 
+LOOKS = """all => all.map(getComputedStyle).map(one => [one.stroke, one.strokeDasharray, one.strokeWidth])"""
+"""Colour, dashes and width of curves."""
 PAIR = {"module": "3 mm", "teeth": [12, 24], "shifts": [0.6, 0.36]}
 
 
@@ -51,6 +53,13 @@ def test_sliders_move_the_pair_in_its_contour(running: Any, server: Served) -> N
     # The contour has its curves and what is possible inside.
     assert page.locator("#contour .curve.blocks").count() >= 4
     assert page.locator("#contour .inside").get_attribute("d").count("M") > 20
+    # No two curves look alike, and the legend shows each as it is drawn.
+    looks, samples = (
+        page.eval_on_selector_all(where, LOOKS) for where in ("#contour .curve", "#legend .curve")
+    )
+    assert len(set(map(tuple, looks))) == len(looks) >= 8
+    assert samples == looks
+    assert {"x₁", "x₂", "0.5", "1"} <= set(page.locator("#contour text").all_text_contents())
     assert page.locator("#mesh .tooth").count() > 20
     described = GEAR_PAIRS.parse(page.locator("#text").inner_text())
     assert described.shifts == (0.6, 0.36)

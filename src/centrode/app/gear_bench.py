@@ -68,10 +68,9 @@ def _contour(described: GearPair) -> dict[str, Any]:
         "second": [float(contour.second[0]), float(contour.second[-1])],
         "inside": ["".join("1" if one else "0" for one in row) for row in inside.T.tolist()],
         "curves": [
-            {"label": _(CURVES[name].message), "blocks": name in BLOCKING, "lines": _lines(places)}
-            if not CURVES[name].values
-            else {
-                "label": render.screen_text(CURVES[name], described.display),
+            {
+                "name": name,
+                "label": str(render.screen_text(CURVES[name], described.display)),
                 "blocks": name in BLOCKING,
                 "lines": _lines(places),
             }

@@ -103,6 +103,8 @@ WORDS: Mapping[str, str] = {
 """Labels of the page by their names in it."""
 TICKET = re.compile(r"[0-9a-f]{32}")
 """What a page names its search by, so that no other one stops it."""
+LEAST_LONG = 0.9995
+"""Metres from which three digits of millimetres would be written as a power of ten."""
 DIGITS = 6
 """Significant digits of places in a picture."""
 EVERY = 2
@@ -189,7 +191,8 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
             [
                 "size",
                 " × ".join(
-                    words(Number(one, "m", digits=".3g" if one < 1 else ".5g")) for one in answer.size
+                    words(Number(one, "m", digits=".3g" if one < LEAST_LONG else ".5g"))
+                    for one in answer.size
                 ),
             ]
         )

@@ -285,6 +285,7 @@ class _BlockWriter:
                     "unit": y["unit"],
                     "values": _numbers(np.asarray(curve.values, dtype=float)[plot.abscissa.order] * up),
                     "dashed": curve.approximate,
+                    "pen": curve.place,
                 }
                 for curve in panel.curves
             ]

@@ -10,6 +10,14 @@ export interface ChartLine {
   values: ArrayLike<number>;
   x?: ArrayLike<number>; // its own abscissa
   dashed?: boolean;
+  pen?: number; // its colour; its place among the lines where none is given
+}
+const PENS = 6;
+// How each line looks: its own pen, unless two that look alike would have the same; dashed where the pens come round again.
+function looksOf(lines: ChartLine[]): string[] {
+  const look = (pen: number, dashed?: boolean): string => `line-${pen % PENS}${dashed || pen >= PENS ? " dashed" : ""}`;
+  const own = lines.map((line, k) => look(line.pen ?? k, line.dashed));
+  return new Set(own).size === lines.length ? own : lines.map((line, k) => look(k, line.dashed));
 }
 export interface ChartData {
   title: string;
@@ -191,6 +199,7 @@ export class Chart {
     make("rect", { class: "box", x: LEFT, y: UPPER, width: wide - LEFT - RIGHT, height: TALL - LOWER - UPPER }, svg);
     make("text", { class: "axis", x: wide - RIGHT, y: TALL - 6, "text-anchor": "end" }, svg).textContent = symbol;
     make("text", { class: "axis", x: LEFT - 6, y: 12, "text-anchor": "end" }, svg).textContent = data.unit === "1" ? "" : data.unit;
+    const looks = looksOf(data.lines);
     data.lines.forEach((line, k) => {
       let d = "", pen = false, before = NaN;
       for (let sample = 0; sample < line.values.length; sample += 1) {
@@ -200,17 +209,17 @@ export class Chart {
         if (known) d += `${pen ? "L" : "M"}${digits(x(across))} ${digits(y(value))}`;
         pen = known;
       }
-      make("path", { class: `line line-${k % 6}${line.dashed ? " dashed" : ""}`, d }, svg);
+      make("path", { class: `line ${looks[k]}`, d }, svg);
     });
     this.cursor = this.seek ? make("line", { class: "cursor", y1: UPPER, y2: TALL - LOWER }, svg) : null;
-    this.dots = this.seek ? data.lines.map((_line, k) => make("circle", { class: `spot line-${k % 6}`, r: 3.5 }, svg)) : [];
+    this.dots = this.seek ? data.lines.map((_line, k) => make("circle", { class: `spot ${looks[k]!.split(" ")[0]}`, r: 3.5 }, svg)) : [];
     this.place = (sample) => [x(between(abscissa, sample)), y];
     svg.setAttribute("aria-label", say("curve", { what: data.title, least: this.said(seen ? from : NaN), most: this.said(seen ? to : NaN) }));
     this.outputs = [];
     this.legend.replaceChildren(...data.lines.map((line, k) => {
       const entry = document.createElement("span"), sign = document.createElement("i"), output = document.createElement("span");
       entry.className = "entry";
-      sign.className = `line-${k % 6}`;
+      sign.className = looks[k]!;
       sign.ariaHidden = "true";
       this.outputs.push(output);
       entry.append(sign, this.seek ? `${line.label} = ` : line.label, output);

@@ -3,7 +3,7 @@ import { refusal, token } from "./token";
 import { typeset } from "./typeset";
 
 type Point = [number, number];
-interface Curve { label: string; blocks: boolean; lines: Point[][] }
+interface Curve { name: string; label: string; blocks: boolean; lines: Point[][] }
 interface Contour { first: Point; second: Point; inside: string[]; curves: Curve[] }
 interface Pair {
   facts: [string, string][]; problems: string[]; works: boolean; teeth: { wheel: number; line: Point[] }[];
@@ -65,6 +65,13 @@ const draw = (name: string, attributes: Record<string, string | number>): SVGEle
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
   return element;
 };
+// Looks of a curve: its colour by what it bounds, dashed for the wheel, heavy where a pair beyond it cannot work.
+const looks = (one: Curve): string => `curve ${one.name.replace(/_[12]$/, "").replace(".", "-")}${one.name.endsWith("_2") ? " second" : ""}${one.blocks ? " blocks" : ""}`;
+const sample = (one: Curve): SVGElement => {
+  const drawn = draw("svg", { class: "sample", viewBox: "0 0 34 10", "aria-hidden": "true" });
+  drawn.append(draw("path", { class: looks(one), d: "M1 5H33" }));
+  return drawn;
+};
 const path = (line: Point[]): string => line.map(([x, y], k) => `${k ? "L" : "M"}${x} ${-y}`).join("");
 
 async function begin(): Promise<void> {
@@ -119,8 +126,21 @@ async function begin(): Promise<void> {
     const cells = got.inside.flatMap((row, up) => [...row.matchAll(/1+/g)].map((run) => `M${low + (run.index - 0.5) * wide} ${-(below + (up - 0.5) * tall)}h${run[0].length * wide}v${-tall}h${-run[0].length * wide}z`));
     contour.replaceChildren(draw("path", { class: "inside", d: cells.join("") }),
       draw("path", { class: "axis", d: `M${low} 0H${high}M0 ${-below}V${-above}` }),
-      ...got.curves.map((one) => { const drawn = draw("path", { class: one.blocks ? "curve blocks" : "curve", d: one.lines.map(path).join("") }); const title = draw("title", {}); title.textContent = one.label; drawn.append(title); return drawn; }), place);
-    legend.replaceChildren(...got.curves.map((one) => make("li", { textContent: (one.blocks ? "━ " : "─ ") + one.label })));
+      ...got.curves.map((one) => { const drawn = draw("path", { class: looks(one), d: one.lines.map(path).join("") }); const title = draw("title", {}); title.textContent = one.label; drawn.append(title); return drawn; }), place);
+    const size = (high - low) / 28, words: SVGElement[] = [];
+    const write = (x: number, y: number, text: string, anchor: string): void => {
+      const written = draw("text", { x, y: -y, "font-size": size, "text-anchor": anchor });
+      written.textContent = text;
+      words.push(written);
+    };
+    const number = (value: number): string => typeset(value.toLocaleString(language, { maximumFractionDigits: 1 }));
+    const inner = (from: number, to: number): number[] => Array.from({ length: Math.floor(2 * (to - from)) }, (_, k) => Math.ceil(2 * from) / 2 + k / 2).filter((value) => value > from + 2 * size && value < to - 2 * size);
+    for (const value of inner(low, high)) if (value) write(value, below + 0.3 * size, number(value), "middle");
+    for (const value of inner(below, above)) write(low + 0.3 * size, value - 0.35 * size, number(value), "start");
+    write(high - 0.3 * size, below + 0.3 * size, "x₁", "end");
+    write(low + 0.3 * size, above - size, "x₂", "start");
+    contour.append(...words);
+    legend.replaceChildren(...got.curves.map((one) => make("li", {}, sample(one), one.label)));
     for (const [input, [from, to]] of [[first, got.first], [second, got.second]] as const) {
       input.min = from.toFixed(2);
       input.max = to.toFixed(2);

@@ -1,6 +1,6 @@
 // Sheets of topics: facts, tables, curves and pictures as the server sends them.
 import { effect, signal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { CamPanel } from "./cam";
 import { CourseView } from "./courses";
 import { ChartView, Missing, MotionPanel, signed } from "./motion_panel";
@@ -12,7 +12,7 @@ const LEAST_SCALE = 1.16, MOST_SCALE = 1.75; // pixels of a point of paper
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
   const holder = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  useLayoutEffect(() => { // before it is seen: a keyboard scrolls it from the first
     const parsed = new DOMParser().parseFromString(text, "text/html");
     for (const one of parsed.body.querySelectorAll("script, foreignObject, iframe, object, embed, link, metadata")) one.remove();
     for (const one of parsed.body.querySelectorAll("*")) for (const attribute of [...one.attributes]) {
@@ -117,7 +117,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
             title: [block.title, block.y?.label].filter(Boolean).join(": "), unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit) },
             shaded: (block.shaded ?? []).flatMap(([from, to]) => (from === null || to === null ? [] : [{ from, to }])),
             places: (block.marks ?? []).flatMap((mark) => (mark.at === null ? [] : [{ at: mark.at, label: mark.label }])),
-            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
+            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, pen: curve.pen, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
           })),
         };
       }

@@ -216,6 +216,7 @@ export interface Curve {
   values: (number | null)[];
   x?: (number | null)[];
   dashed?: boolean;
+  pen?: number; // its place among the things of its kind: the same colour in every picture
 }
 export type EventSign = "impact" | "stick" | "slip" | "close" | "open" | "user" | "other";
 // A motion that a topic has found, with what its slider marks; instants in seconds.
