@@ -69,13 +69,13 @@ class Similarity:
 
 def check_similarity(mechanism: Mechanism, where: str = "") -> None:
     """Raise InputError that names what of a mechanism has no similar one."""
-    why = next(_unreached(mechanism), None)
+    why = next(_parts_beyond_similarity(mechanism), None)
     if why is not None:
         what = _("{what} cannot be moved and scaled with the mechanism").format(what=why)
         raise InputError(where, what, _("remove it, or leave the place of the mechanism as it is given"))
 
 
-def _unreached(mechanism: Mechanism) -> Iterator[str]:
+def _parts_beyond_similarity(mechanism: Mechanism) -> Iterator[str]:
     if mechanism.space != "plane":
         yield 'space = "sphere"'
     for name in UNREACHED:
