@@ -145,7 +145,7 @@ def test_columns_stand_in_line(centrode: Centrode) -> None:
 
 
 def test_letters_with_marks_and_wide_letters_keep_the_columns() -> None:
-    text = render.aligned([("e\u0301", "1"), ("漢", "2"), ("ab", "3")])
+    text = render.aligned_text([("e\u0301", "1"), ("漢", "2"), ("ab", "3")])
     assert text.splitlines() == ["e\u0301   1", "漢  2", "ab  3"]
 
 

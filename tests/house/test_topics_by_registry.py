@@ -20,6 +20,7 @@ ALLOWED = {
     # topics of many mechanisms have commands and folders of their own: they go on with what was interrupted
     "cli/sweep.py": {"centrode.sweeps.sweep"},
     "cli/variants.py": {"variants"},
+    "report/variants/gear_folders.py": {"centrode.assignments.gear_variants"},
     "report/variants/answers.py": {"centrode.assignments.results"},
     # what a variant has integrated already is not integrated again for its report
     "report/variants/files.py": {"centrode.assignments.results", "centrode.equations.integration"},

@@ -89,7 +89,7 @@ def test_a_report_speaks_its_language_and_leaves_the_other_alone() -> None:
     [
         (ReportOptions(chapters=("date",)), 'there is no chapter "date"; did you mean "data"'),
         (ReportOptions(points=("Q",)), 'unknown point "Q"'),
-        (ReportOptions(chapters=()), "chapters: no chapter is named; known are: data"),
+        (ReportOptions(chapters=()), "chapters: no chapter is named; known are: synthesis, data"),
         (ReportOptions(digits=1), "the number of significant digits is 2 to 12, 1 is given"),
         (ReportOptions(digits=99), "the number of significant digits is 2 to 12"),
     ],

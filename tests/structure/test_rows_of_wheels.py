@@ -81,6 +81,6 @@ def test_rows_are_the_derivatives_of_the_residuals(track: str) -> None:
     assert {
         ("GearRatio", "link"),
         ("NoSlip", "point"),
-        ("Contact", "link"),
+        ("TrackContact", "link"),
         ("DistanceDrive", "point"),
     } <= checked

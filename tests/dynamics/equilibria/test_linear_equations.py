@@ -105,7 +105,7 @@ def test_many_states_are_those_of_each() -> None:
 def test_closing_keeps_what_closes_and_marks_what_does_not() -> None:
     loaded = loaded_mechanism(ct.parse_mechanism(FIVE_BAR).with_drives_held())
     far = loaded.position.coordinates + np.array([0.0, 0.0, 0.3, 0.0])
-    closed = loaded.closed(np.array([loaded.position.coordinates, far]))
+    closed = loaded.closed_coordinates(np.array([loaded.position.coordinates, far]))
     assert np.max(np.abs(closed[0] - loaded.position.coordinates)) < 1e-14
     left, _rows = loaded.closures_at(closed)
     assert np.nanmax(np.abs(left)) < 1e-14

@@ -83,7 +83,9 @@ def jumps(x: Array, y: Array) -> NDArray[np.intp]:
     with np.errstate(divide="ignore", invalid="ignore"):
         steps = np.abs(np.diff(y) / np.diff(x))
         steep = steps[1:-1] > STEEP * np.maximum(steps[:-2], steps[2:])
-        great = np.abs(np.diff(y))[1:-1] > GREAT * float(np.ptp(known))
+        # What changes by its rounding alone does not jump.
+        least = max(GREAT * float(np.ptp(known)), 64.0 * EPS * float(np.max(np.abs(known))))
+        great = np.abs(np.diff(y))[1:-1] > least
     return np.flatnonzero(steep & great) + 1
 
 
