@@ -48,7 +48,7 @@ def show_panel(one: Bench, topic: str) -> None:
 
 def told(one: Bench) -> str:
     """What the player says."""
-    return str(one.page.inner_text(".controls output"))
+    return str(one.page.inner_text(".controls output")).replace("\u00a0", " ")
 
 
 def shown_time(one: Bench) -> float:
@@ -199,7 +199,7 @@ def test_modes_move_on_the_canvas(running: Any, server: Served) -> None:
     with bench(running, server.address, wide=1500) as one:
         open_panel(one, "vibrating-screen", "modes")
         buttons = one.page.locator(".courses button")
-        said = buttons.all_inner_texts()
+        said = [text.replace("\u00a0", " ") for text in buttons.all_inner_texts()]
         # all masses, 126 kg, on both springs and dampers
         stiffness, damping, mass = 40_000, 600, 126
         ratio = damping / (2 * math.sqrt(stiffness * mass))

@@ -12,6 +12,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 PLACES = 360
 """A curve of fewer samples is drawn through about so many places."""
+EPS = float(np.finfo(np.float64).eps)
 STEEP, GREAT = 8.0, 0.05
 """A step is a jump if it is so many times as steep as both its neighbours, and such a part of the curve's range."""
 
