@@ -53,7 +53,7 @@ def told(one: Bench) -> str:
 
 def shown_time(one: Bench) -> float:
     """The instant that the player says [s]."""
-    return float(told(one).split(" = ")[1].split("\u00a0")[0])
+    return float(told(one).split(" = ")[1].split()[0])
 
 
 def slider_share(one: Bench) -> float:
