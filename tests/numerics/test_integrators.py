@@ -144,9 +144,6 @@ def test_coefficients_are_those_of_the_scheme() -> None:
         (dormand_prince.THIRD, DOP853.E3),
     ):
         assert mine == tuple(theirs[: dormand_prince.STAGES])
-    assert list(dormand_prince.MORE_A) == [tuple(row[:k]) for k, row in enumerate(DOP853.A_EXTRA, start=13)]
-    assert tuple(DOP853.C_EXTRA) == dormand_prince.MORE_C
-    assert np.array_equal(dormand_prince.DENSE, DOP853.D)
     b, c = np.array(dormand_prince.B), np.array(dormand_prince.C)
     for power in range(8):
         assert abs(b @ c**power - 1.0 / (power + 1)) <= 1e-14

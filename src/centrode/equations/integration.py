@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -33,7 +35,6 @@ from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
-from centrode.numerics.adaptive_steps import AdaptiveSteps, StepPolynomial
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.search import bisect
@@ -44,6 +45,9 @@ from centrode.structure.dimensions import Dimensions
 # It knows nothing of closed forms: how far the motion goes is judged by the equations alone.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+# slower to import than NumPy, and needed by nothing else
+_scipy = functools.partial(importlib.import_module, "scipy.integrate")
 
 FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
@@ -180,11 +184,12 @@ def _adaptive_states(equations: CauchyEquations, times: Array, tolerance: float)
     with np.errstate(all="ignore"):
         if sign == 0 or not np.isfinite(equations.rates(first, initial)).all():
             return _Followed(state, first, 0)
-        solver = AdaptiveSteps(
-            equations.rates, first, initial, last, tolerance, tolerance * equations.sizes, LONGEST * abs(last - first)
+        solver = _scipy().DOP853(
+            equations.rates, first, initial, last, rtol=tolerance, atol=tolerance * equations.sizes,
+            max_step=LONGEST * abs(last - first),
         )  # fmt: skip
         for steps in range(1, MOST_ADAPTIVE_STEPS + 1):
-            if not solver.step() or not np.isfinite(solver.y).all():
+            if solver.step() is not None or not np.isfinite(solver.y).all():
                 return _Followed(state, float(solver.t), steps)
             if (np.abs(solver.y - initial) > FAR * equations.sizes).any():
                 return _Followed(state, _pole(equations, first, initial, solver), steps)
@@ -192,7 +197,7 @@ def _adaptive_states(equations: CauchyEquations, times: Array, tolerance: float)
             crosses = sign * determinant(equations, solver.t, solver.y) < 0
             stop = _singular_time(equations, course) if crosses else None
             _fill(state, times, course, course.t if stop is None else stop)
-            if stop is not None or solver.is_finished:
+            if stop is not None or solver.status == "finished":
                 return _Followed(state, stop, steps)
     raise InputError(
         "",
@@ -201,7 +206,7 @@ def _adaptive_states(equations: CauchyEquations, times: Array, tolerance: float)
     )
 
 
-def _fill(state: Array, times: Array, course: StepPolynomial, stop: float) -> None:
+def _fill(state: Array, times: Array, course: Any, stop: float) -> None:
     """Rows between the last step's ends, from its polynomial."""
     forward = np.sign(course.t - course.t_old)
     inside = (forward * times > forward * course.t_old) & (forward * times <= forward * stop)
@@ -209,7 +214,7 @@ def _fill(state: Array, times: Array, course: StepPolynomial, stop: float) -> No
         state[inside] = course(times[inside]).T
 
 
-def _pole(equations: CauchyEquations, first: float, initial: Array, solver: AdaptiveSteps) -> float:
+def _pole(equations: CauchyEquations, first: float, initial: Array, solver: Any) -> float:
     """Where an unknown that is very great goes to infinity: near a simple pole y/y' is what is left."""
     moved = solver.y - initial
     most = int(np.argmax(np.abs(moved) / equations.sizes))
@@ -218,7 +223,7 @@ def _pole(equations: CauchyEquations, first: float, initial: Array, solver: Adap
     return float(solver.t) + (left if abs(left) <= NEAR_POLE * abs(solver.t_bound - first) else 0.0)
 
 
-def _singular_time(equations: CauchyEquations, course: StepPolynomial) -> float:
+def _singular_time(equations: CauchyEquations, course: Any) -> float:
     """Where the determinant changes its sign within a step, by bisection: it may be anything but smooth there."""
     low, high = np.array([course.t_old]), np.array([course.t])
     sign = np.sign(determinant(equations, float(low[0]), course(low[0])))
