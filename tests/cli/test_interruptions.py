@@ -40,10 +40,9 @@ def say(self, what, done=0, of=0):
 Progress.say = say
 # Tests that a shell runs in the background ignore SIGINT, and so do their processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-sys.exit(main())
+sys.exit(main(sys.argv[1:]))
 """
 ANIMATE = ("animate", "crank-rocker", "--frames", "5", "--size", "64x64", "--out", "long.gif")
-REPORT = ("report", "crank-rocker", "--format", "html", "--out", "pages")
 RUN = ("run", "kite", "--samples", "3", "--no-figures", "--out", "result")
 
 
@@ -65,10 +64,7 @@ def at_work(folder: Path, *command: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @posix
-@pytest.mark.parametrize(
-    ("command", "number"),
-    [(ANIMATE, "SIGINT"), (RUN, "SIGINT"), (RUN, "SIGTERM"), (REPORT, "SIGINT"), (REPORT, "SIGTERM")],
-)
+@pytest.mark.parametrize(("command", "number"), [(ANIMATE, "SIGINT"), (RUN, "SIGINT"), (RUN, "SIGTERM")])
 def test_a_signal_leaves_nothing(folder: Path, command: tuple[str, ...], number: str) -> None:
     with at_work(folder, *command) as process:
         process.send_signal(getattr(signal, number))

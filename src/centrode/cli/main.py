@@ -125,7 +125,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # xarray imports dask and pint at its first array, which takes a short command a fifth of its time; workers
         # admit the one, units of a text the other
         with _termination_as_interruption(), _rare_collection(), _only_what_is_needed(ours):
-            result = _run(build_app(), list(arguments), ours)
+            result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()
     except BaseException as failure:
@@ -175,10 +175,10 @@ def _rare_collection() -> Iterator[None]:
         gc.set_threshold(*before)
 
 
-def _run(app: click.Command, arguments: list[str], ours: bool) -> object:
-    """What `app.main` does, less its own idea of how a program ends; commands are told whether the process is ours."""
+def _run(app: click.Command, arguments: list[str]) -> object:
+    """What `app.main` does, less its own idea of how a program ends."""
     try:
-        with guard_inputs(), app.make_context("centrode", arguments, obj=ours) as context:
+        with guard_inputs(), app.make_context("centrode", arguments) as context:
             return app.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code

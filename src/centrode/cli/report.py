@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -25,9 +24,9 @@ if TYPE_CHECKING:
     from centrode.render.document.blocks import Report
 
 # What they import is too much for a list of commands.
-_options, _writing, _outline, _aside = (
+_options, _writing, _outline = (
     functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
-    for name in ("report.study", "report.files", "render.document.outline", "report.side_processes")
+    for name in ("report.study", "report.files", "render.document.outline")
 )
 
 
@@ -116,9 +115,7 @@ _options, _writing, _outline, _aside = (
     metavar=mark("SHARE"),
     help=mark("Greatest change of a length over itself, or of a coordinate over the greatest length (0.3)."),
 )
-@click.pass_obj
 def report(
-    ours: bool | None,
     description: str,
     out: Path | None,
     formats: str | None,
@@ -159,9 +156,7 @@ def report(
         )
     if isinstance(described, ct.Mechanism):
         echo_values(described, *(("--at", place) for place in places))
-    # a fork is safe where nobody but this program has begun threads
-    aside = _aside().side_processes() if ours else nullcontext()
-    with output.output_folder(folder) as draft, Progress() as progress, aside:
+    with output.output_folder(folder) as draft, Progress() as progress:
         with about(description):
             made = ct.report(described, options, name=Path(description).stem, said=progress.say)
         ct.write_report(

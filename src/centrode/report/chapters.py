@@ -13,21 +13,19 @@ from typing import NamedTuple, TypeAlias
 from centrode.render.document.blocks import ChapterBlocks
 from centrode.report import cam_conclusions, repaired_mechanism
 from centrode.report.study import ReportStudy
-from centrode.report.topics import begin_chapter, topic_chapter
+from centrode.report.topics import topic_chapter
 from centrode.topics import order
 from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
 
 Make: TypeAlias = Callable[[ReportStudy], ChapterBlocks | None]
-Begin: TypeAlias = Callable[[ReportStudy], bool]
 
 
 class Kind(NamedTuple):
-    """A chapter's title, marked for the catalogues, what makes it, and what begins it and says if it did."""
+    """A chapter's title, marked for the catalogues, and what makes it."""
 
     title: str
     make: Make
-    begin: Begin = lambda _study: False
 
 
 def either(*makers: Make) -> Make:
@@ -39,22 +37,15 @@ def either(*makers: Make) -> Make:
     return make
 
 
-def either_begins(*beginners: Begin) -> Begin:
-    """The first that has the chapter begins it."""
-    return lambda study: any(begin(study) for begin in beginners)
-
-
 def chapters_of_topics() -> dict[str, Kind]:
     """The chapters of all topics; one that several topics make is that of the first with something to tell."""
     kinds: dict[str, Kind] = {}
     for topic in TOPICS:
         for chapter in topic.document.chapters:
             make: Make = functools.partial(topic_chapter, topic, chapter)
-            begin: Begin = functools.partial(begin_chapter, topic, chapter)
             if chapter.name in kinds:
-                before = kinds[chapter.name]
-                make, begin = either(before.make, make), either_begins(before.begin, begin)
-            kinds[chapter.name] = Kind(chapter.title, make, begin)
+                make = either(kinds[chapter.name].make, make)
+            kinds[chapter.name] = Kind(chapter.title, make)
     return kinds
 
 

@@ -22,7 +22,6 @@ from centrode.report.checks import gather_checks
 from centrode.report.files import lacking
 from centrode.report.note import CONCLUSIONS, as_note, standard_of, with_capital_heads
 from centrode.report.opening_pictures import move_players, opening_of
-from centrode.report.side_processes import has_side_processes
 from centrode.report.study import ReportOptions, ReportStudy, Subject, settle_options
 from centrode.report.subjects import ReportedSource, reported_subject
 from centrode.synthesis.requests import SynthesisTask
@@ -136,13 +135,6 @@ def _description_text(study: ReportStudy) -> DescriptionText | None:
 
 
 def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[ChapterBlocks]:
-    if has_side_processes():
-        # drawn there while the results of the next are computed here
-        for done, kind in enumerate(wanted.values()):
-            if said is not None:
-                said(_(kind.title), done, len(wanted))
-            kind.begin(study)
-        said = None
     for done, (key, kind) in enumerate(wanted.items()):
         if said is not None:
             said(_(kind.title), done, len(wanted))

@@ -16,7 +16,6 @@ from centrode.locale import _, speaking
 from centrode.model.reading import nearest, value_text
 from centrode.optional_packages import how_to_install
 from centrode.render.document.blocks import Report
-from centrode.report.side_processes import begin
 
 # What documents need is an extra: only where they are asked for.
 _html, _pdf, _word, _latex, _notebook = (
@@ -96,8 +95,12 @@ def write_report(
     ['report.html']
     """
     check_formats(formats)
+    documents: dict[str, bytes] = {}
     with speaking(report.language):
-        documents = _documents(report, tuple(dict.fromkeys(formats)), name, said)
+        for kind in dict.fromkeys(formats):
+            if said is not None:
+                said(f"{name}.{kind}")
+            documents |= document(report, kind, name)
     folder = Path(folder)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -106,19 +109,6 @@ def write_report(
             (draft / file).parent.mkdir(exist_ok=True)
             (draft / file).write_bytes(content)
     return [folder / file for file in documents]
-
-
-def _documents(
-    report: Report, kinds: Sequence[str], name: str, said: Callable[[str], None] | None
-) -> dict[str, bytes]:
-    """The files of all documents; those of several are made at once where there are other processes."""
-    begun = [(kind, begin(functools.partial(document, report, kind, name))) for kind in kinds]
-    documents: dict[str, bytes] = {}
-    for kind, work in begun:
-        if said is not None:
-            said(f"{name}.{kind}")
-        documents |= work.result()
-    return documents
 
 
 def check_formats(formats: Sequence[str]) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Hashable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -11,7 +9,6 @@ from centrode.errors import CentrodeError, InputError, MotionError, NotComputedY
 from centrode.locale import _
 from centrode.render.document.blocks import ChapterBlocks, ParagraphBlock, SectionBlocks, shown
 from centrode.render.document.chapters import document_chapter
-from centrode.report.side_processes import BegunWork, begin
 from centrode.report.study import moments_of
 
 if TYPE_CHECKING:
@@ -25,7 +22,10 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if not _is_concerned(topic, chapter, study):
+    if topic.document.on_request and chapter.name not in (study.wishes.chapters or ()):
+        return None
+    concerns = topic.concerns if chapter.concerns is None else chapter.concerns
+    if study.subject != topic.subject or (concerns is not None and not concerns(study.description)):
         return None
     try:
         sheet = _sheet(topic, study)
@@ -37,46 +37,10 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
         return left_out(chapter.name, _(chapter.title), reason)
     if chapter.name not in sheet.chapters:
         return None
-    begun: BegunWork[ChapterBlocks] | None = study.once(_begun_key(topic, chapter), lambda: None)
-    made = _drawing(chapter, sheet, study)() if begun is None else begun.result()
-    return replace(made, code=chapter.code)
-
-
-def begin_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> bool:
-    """Compute what a chapter shows, and begin to draw it in another process; whether the topic has the chapter.
-
-    What fails is told when the chapter is made.
-    """
-    try:
-        if not _is_concerned(topic, chapter, study):
-            return False
-        sheet = _sheet(topic, study)
-    except Exception:
-        return True
-    if chapter.name not in sheet.chapters:
-        return False
-    study.keep(_begun_key(topic, chapter), begin(_drawing(chapter, sheet, study)))
-    return True
-
-
-def _begun_key(topic: Topic, chapter: ChapterOfTopic) -> Hashable:
-    return "begun", topic.name, chapter.name
-
-
-def _is_concerned(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> bool:
-    """Whether the chapter of a topic belongs to what is reported on."""
-    if topic.document.on_request and chapter.name not in (study.wishes.chapters or ()):
-        return False
-    concerns = topic.concerns if chapter.concerns is None else chapter.concerns
-    return study.subject == topic.subject and (concerns is None or bool(concerns(study.description)))
-
-
-def _drawing(chapter: ChapterOfTopic, sheet: Sheet, study: ReportStudy) -> Callable[[], ChapterBlocks]:
-    """What spells a chapter of a sheet and draws its pictures."""
-    wishes = study.wishes
-    return functools.partial(
-        document_chapter, chapter.name, sheet, study.numbers, full=wishes.full, rows=wishes.rows
+    made = document_chapter(
+        chapter.name, sheet, study.numbers, full=study.wishes.full, rows=study.wishes.rows
     )
+    return replace(made, code=chapter.code)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
