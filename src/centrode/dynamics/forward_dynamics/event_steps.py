@@ -1030,11 +1030,7 @@ class EventWatch:
 
     def _is_implied(self, felt: ContactForces, number: int, others: Iterable[int]) -> bool:
         """Whether a contact cannot move where others hold."""
-        rows: list[int] = []
-        for k in others:
-            if not self._follows(felt, self._rows[k], rows):
-                rows.append(self._rows[k])
-        return self._follows(felt, self._rows[number], rows)
+        return self._follows(felt, self._rows[number], self._independent(felt, others))
 
     def _follows(self, felt: ContactForces, row: int, rows: list[int]) -> bool:
         """Whether a row follows from closures and independent other rows, as far as the steps tell them apart."""
@@ -1075,6 +1071,3 @@ def _product(one: Any, other: Any) -> Any:
         if k in other:
             total = total + x * other[k]
     return total
-
-
-Progress: TypeAlias = Callable[[float], None]
