@@ -8,9 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import click
 import pytest
 
 import centrode as ct
+from centrode.cli.main import COMMANDS
 from centrode.model.schema import mechanism_schema
 
 Centrode = Callable[..., Any]
@@ -87,6 +89,14 @@ def test_the_schema_is_json(centrode: Centrode) -> None:
     done = centrode("schema")
     assert done.code == 0
     assert json.loads(done.out) == mechanism_schema()
+
+
+def test_the_help_of_every_command_explains_what_is_given(centrode: Centrode) -> None:
+    """Whatever stands in capitals in a line of usage has a line of its own below it."""
+    for command in COMMANDS:
+        given = [one for one in command.params if isinstance(one, click.Argument)]
+        assert all(getattr(one, "help", None) for one in given), command.name
+        assert not given or "Positional arguments:" in centrode(str(command.name), "--help").out
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,11 @@ from centrode.optional_packages import how_to_install
 
 
 @click.command(help=mark("Compute a pair of gears: dimensions, sliding, true teeth."))
-@click.argument("pair", metavar=mark("FILE_OR_EXAMPLE"))
+@click.argument(
+    "pair",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in pair of gears."),
+)
 @click.option(
     "--animate", is_flag=True, help=mark("Also animate the mesh and the generation by the rack, as GIFs.")
 )

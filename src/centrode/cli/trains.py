@@ -20,7 +20,11 @@ MECHANISM = "train.toml"
 
 
 @click.command(help=mark("Find trains of gears of a ratio: teeth, efficiency, speeds."))
-@click.argument("train", metavar=mark("FILE_OR_EXAMPLE"))
+@click.argument(
+    "train",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in train of gears."),
+)
 @click.option(
     "--drives",
     "machine",
