@@ -25,7 +25,7 @@ WAITING_BROWSERS = 128
 
 
 def work_folder_of(file: Path | None) -> WorkFolder:
-    """The folder that is named, or that of a file; the working folder by default. InputError for a file of another kind."""
+    """The folder that is named, or that of a file; the working folder by default. InputError for other files."""
     if file is None or file.is_dir():
         return WorkFolder((file or Path()).resolve())
     folder = file.parent.resolve()
