@@ -51,7 +51,7 @@ def gears(pair: str, animate: bool, out: Path | None, no_figures: bool, dark: bo
                 names = output.file_names(draft)
     click.echo(_(described.title) or pair)
     click.echo()
-    click.echo(render.sheet_text(sheet, described.display))
+    output.print_sheet(sheet, described.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
         if not render.writes_dxf():

@@ -74,6 +74,6 @@ def synthesise(wanted: str, out: Path | None, jobs: int, no_figures: bool, dark:
                 names = output.file_names(draft)
     click.echo(_(task.title) or wanted)
     click.echo()
-    click.echo(render.sheet_text(sheet, task.display))
+    output.print_sheet(sheet, task.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))

@@ -52,7 +52,7 @@ def trains(train: str, machine: str | None, out: Path | None, no_figures: bool, 
                 names = output.file_names(draft)
     click.echo(_(described.title) or train)
     click.echo()
-    click.echo(render.sheet_text(sheet, described.display))
+    output.print_sheet(sheet, described.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
         click.echo(_("the chosen train moves with: centrode run {file}").format(file=out / MECHANISM))

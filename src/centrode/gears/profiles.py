@@ -125,7 +125,7 @@ def _undercut_corner(wheel: GearWheel) -> tuple[float, float]:
 def _crossing_of_fillet_and_flank(
     rack: TransverseRack, pitch_radius: float, shift: float, base: float, half: float
 ) -> tuple[float, float]:
-    """As `_undercut_corner` by what decides it: the generation, the base radius [m], half a tooth's angle on it [rad]."""
+    """What `_undercut_corner` gives, by the generation, the base radius [m] and half a tooth's angle on it [rad]."""
     alpha = rack.pressure_angle
     fillet = partial(fillet_curve, rack, pitch_radius, shift)
 
