@@ -418,6 +418,18 @@ def named_entries(value: object, read_key: Callable[[object], str], most: int) -
     return named
 
 
+def entries_by_path(
+    value: Mapping[Any, Any], above: str = "", depth: int = 1
+) -> Iterator[tuple[str, object]]:
+    """Entries of tables within tables by their dotted paths: TOML reads links.DB.length as three tables."""
+    for key, entry in value.items():
+        path = f"{above}.{key}" if above else str(key)
+        if isinstance(entry, Mapping) and depth < NESTING:
+            yield from entries_by_path(entry, path, depth + 1)
+        else:
+            yield path, entry
+
+
 def _check_count(count: int, most: int) -> None:
     if count > most:
         what = _("at most {most} entries are allowed, got {count}")
