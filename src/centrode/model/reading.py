@@ -101,7 +101,7 @@ def value_text(value: object) -> str:
         text = value if len(value) <= 60 else value[:57] + "..."
         return '"' + "".join(c if c.isprintable() else repr(c)[1:-1] for c in text) + '"'
     if isinstance(value, float):
-        return repr(value)
+        return repr(value).removesuffix(".0")
     if isinstance(value, int):
         return str(value) if abs(value) < 10**30 else _("a number of that size")
     if isinstance(value, dict):
