@@ -183,7 +183,11 @@ class PlainSpelling(Spelling):
         return self.unit(unit)
 
     def _digits(self, value: float, digits: str) -> str:
-        return DASH if math.isnan(value) else format(value, f"{digits}.6g" if digits in ("", "+") else digits)
+        if math.isnan(value):
+            return DASH
+        if not value and digits.endswith("e"):
+            return "0"
+        return format(value, f"{digits}.6g" if digits in ("", "+") else digits)
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""
