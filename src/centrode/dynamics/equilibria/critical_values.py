@@ -159,7 +159,7 @@ def _check_series(
     found: ContinuationNumber, made: Callable[[float], LoadedMechanism], value: float, where: str
 ) -> None:
     """Refuse a number that the numbers of the equations do not tell all about."""
-    own, place = made(value), found.loaded.position.coordinates
+    own, place = made(value), found.loaded.start
     at = place[None] + 0.1 * found.loaded.units
     exact, expanded = own.at(at), found.loaded.at(at, numbers=found.numbers(value))
     for name in ("force", "closures", "mass"):
@@ -186,8 +186,7 @@ class _Follower:
     def __init__(self, along: ContinuationNumber) -> None:
         self.along, self.loaded = along, along.loaded
         self.units = np.append(self.loaded.units, along.unit)
-        angles = [one.kind == "angle" for one in self.loaded.coordinates]
-        self.turning = np.append(angles, False) & repeats_with_position(self.loaded)
+        self.turning = np.append(self.loaded.angles, False) & repeats_with_position(self.loaded)
 
     def apart(self, point: _Point, whole: Array) -> Array:
         """Difference of a point and another one in units; whole turns are none where the loads repeat with them."""

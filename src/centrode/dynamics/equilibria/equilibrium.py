@@ -26,6 +26,7 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     Equilibria,
     find_equilibria,
     no_equilibrium,
+    stop_pushes,
 )
 from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
@@ -37,6 +38,7 @@ from centrode.dynamics.equilibria.small_motions import (
     SmallMotions,
     small_motions,
 )
+from centrode.dynamics.load_coordinates import Turn
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
@@ -175,7 +177,8 @@ def equilibrium_results(
 def results_of_equilibrium(mechanism: Mechanism, equilibria: xr.Dataset) -> EquilibriumResults:
     """A dataset of `equilibrium` with the positions that are drawn."""
     held = {name: float(value) for name, value in json.loads(equilibria.attrs["hold"]).items()}
-    loaded = loaded_mechanism(mechanism.with_drives_held(), held)
+    drawn = mechanism.with_drives_held().model_copy(update={"controllers": ()})
+    loaded = loaded_mechanism(drawn, held)
     places = equilibria["generalised_coordinate"].values
     return EquilibriumResults(mechanism, equilibria, posed_motion(loaded, np.zeros(len(places)), places))
 
@@ -254,9 +257,12 @@ def _dataset(
     variables |= _stability(motions)
     variables |= _friction(loaded, found, len(resting))
     coordinates: dict[str, Any] = {"equilibrium": np.arange(1, len(places) + 1)}
+    variables |= _controllers(description, loaded, places, coordinates)
     if resting:
         _correct_holding(variables, description, loaded, resting)
-        variables["restraint_force"] = _stop_forces(description, len(found.places), resting)
+    pushes = stop_pushes(loaded, places)
+    if resting or np.any(pushes):
+        variables["restraint_force"] = _stop_forces(description, pushes, len(found.places), resting)
         labels = [stop.label for stop in description.stops]
         coordinates["contact"] = np.array(labels, dtype=object)
     coordinates |= label_values(poses, description)
@@ -369,12 +375,32 @@ def _correct_holding(
             row[own.index(kept.name)] = -description.motion_parameter.drive(kept.name).sense * force
 
 
-def _stop_forces(description: Mechanism, free: int, resting: Sequence[RestingEquilibrium]) -> Any:
-    """Forces of all stops along their coordinates (equilibrium, contact); zero of what is open."""
-    stops = description.stops
-    forces = np.zeros((free + len(resting), len(stops)))
+def _controllers(
+    description: Mechanism, loaded: LoadedMechanism, places: Array, coordinates: dict[str, Any]
+) -> dict[str, Any]:
+    """What controllers give at equilibria, as far as a free drive depends on it; their names among the coordinates."""
+    controls = loaded.equations.controls
+    if not controls:
+        return {}
+    coordinates["controller"] = np.array([one.description.name for one in controls], dtype=object)
+    found = vocabulary_variable("controller_output", ("equilibrium", "controller"), loaded.at(places).output)
+    units = [
+        "N m" if isinstance(one.drives, Turn) else "N" if one.drives is not None else "1" for one in controls
+    ]
+    found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
+    return {"controller_output": found}
+
+
+def _stop_forces(
+    description: Mechanism, pushes: Array, free: int, resting: Sequence[RestingEquilibrium]
+) -> Any:
+    """Forces of all stops along their coordinates (equilibrium, contact); zero of what is open.
+
+    `pushes` are those of compliant stops.
+    """
+    stops, forces = description.stops, pushes.copy()
     for row, one in zip(forces[free:], resting, strict=True):
-        row[:] = [one.forces.get(stop.label, 0.0) for stop in stops]
+        row += [one.forces.get(stop.label, 0.0) for stop in stops]
     found = vocabulary_variable("restraint_force", ("equilibrium", "contact"), forces)
     units = ["N" if stop.link is None else "N m" for stop in stops]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
@@ -396,10 +422,10 @@ def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[
     if found.curve is None:
         reach = friction_reach(loaded, found.places)
         # on a stop friction has no bounds of its own
-        reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])
+        reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])[:, : loaded.joints]
         return {"friction_reach": named_number("friction_reach", ("equilibrium", "coordinate"), reach)}
     bands = friction_bands(found)
-    ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)
+    ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)[:, :, : loaded.joints]
     whole = np.array([band.whole for band in bands], dtype=np.int8)
     return {
         "friction_band": named_number("friction_band", ("band", "end", "coordinate"), ends),
@@ -412,7 +438,7 @@ def _branch_variables(
 ) -> dict[str, Any]:
     unit = QUANTITY_KINDS[kind].unit if kind in QUANTITY_KINDS else "1"
     none = np.zeros((0, loaded.size))
-    places = np.concatenate([none, *(one.places for one in followed)])
+    places = np.concatenate([none, *(one.places for one in followed)])[:, : loaded.joints]
     values = np.concatenate([np.zeros(0), *(one.values for one in followed)])
     numbers = np.concatenate(
         [np.zeros(0), *(np.full(len(one.values), k + 1.0) for k, one in enumerate(followed))]
@@ -425,7 +451,7 @@ def _branch_variables(
             if not any(_same_place(loaded, one, other) for other in critical):
                 critical.append(one)
     critical.sort(key=lambda one: one.value)
-    at = np.array([one.place for one in critical]).reshape(len(critical), loaded.size)
+    at = np.array([one.place for one in critical]).reshape(len(critical), loaded.size)[:, : loaded.joints]
 
     def of_number(name: str, dimension: str, numbers: Array) -> Any:
         variable = vocabulary_variable(name, (dimension,), numbers)
