@@ -56,9 +56,7 @@ class ConfigurationCurve:
     @cached_property
     def friction(self) -> Array:
         """Greatest generalised dry friction along the curve (n), in the unit of the force."""
-        found = self.equations
-        slopes = np.abs(np.einsum("nfc,nc->nf", found.along, self.tangents))
-        return np.asarray(np.sum(slopes * np.abs(found.friction), axis=1))
+        return self.loaded.held_by_friction(self.places, self.equations, self.tangents)
 
 
 def repeats_with_position(loaded: LoadedMechanism) -> bool:

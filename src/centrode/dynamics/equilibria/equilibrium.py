@@ -28,7 +28,7 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     no_equilibrium,
     stop_pushes,
 )
-from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach
+from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach, friction_share
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import posed_motion
 from centrode.dynamics.equilibria.resting_equilibria import RestingEquilibrium, resting_equilibria
@@ -127,7 +127,8 @@ def equilibrium(
     loaded = loaded_mechanism(description.with_drives_held(), held)
     found = stable_first(find_equilibria(loaded))
     resting = resting_equilibria(loaded, found)
-    if not len(found.places) and not resting:
+    held_up = found.curve is not None and loaded.has_friction and bool(friction_bands(found))
+    if not len(found.places) and not resting and not held_up:
         raise no_equilibrium(found.starts)
     if progress is not None:
         progress(0.5)
@@ -409,7 +410,7 @@ def _stop_forces(
 
 def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[str, Any]:
     """Where dry friction holds: intervals with one degree of freedom, bounds about each equilibrium with more."""
-    if not loaded.frictions:
+    if not loaded.has_friction:
         return {}
     units = [one.unit for one in loaded.coordinates]
     unit = units[0] if len(set(units)) == 1 else ", ".join(units)
@@ -427,7 +428,10 @@ def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[
     bands = friction_bands(found)
     ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)[:, :, : loaded.joints]
     whole = np.array([band.whole for band in bands], dtype=np.int8)
+    feeds = np.array([band.feeds_itself for band in bands], dtype=np.int8)
     return {
+        "friction_share": vocabulary_variable("friction_share", (), np.array(friction_share(found))),
+        "friction_feeds_itself": vocabulary_variable("friction_feeds_itself", ("band",), feeds),
         "friction_band": named_number("friction_band", ("band", "end", "coordinate"), ends),
         "friction_holds_everywhere": vocabulary_variable("friction_holds_everywhere", ("band",), whole),
     }

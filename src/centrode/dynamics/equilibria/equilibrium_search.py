@@ -81,7 +81,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     InputError
         Nothing can move, or nothing acts.
     MotionError
-        No equilibrium is found, and there is no stop on which one could rest.
+        No equilibrium is found, and there is neither a stop on which one could rest nor friction that holds.
     """
     if not loaded.mobility:
         what = _("nothing can move: all drives are held, or it has no degree of freedom")
@@ -99,7 +99,7 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     if curve is None and not loaded.states:
         found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
     places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
-    if not len(places) and not loaded.mechanism.stops:
+    if not len(places) and not loaded.mechanism.stops and not loaded.has_friction:
         raise no_equilibrium(len(starts) if curve is None else len(curve.places))
     count = len(curve.places) if curve is not None else len(starts)
     return Equilibria(loaded, places, count, curve)

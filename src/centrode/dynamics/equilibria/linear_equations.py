@@ -20,11 +20,13 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.equilibria.controllers_at_rest import controls_at_rest
-from centrode.dynamics.forward_dynamics.contacts import StopPush, coordinate_of_part
+from centrode.dynamics.equilibria.pressed_friction import graph_of_presses, pressed_joints
+from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, coordinate_of_part
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
 from centrode.dynamics.forward_dynamics.free_loads import (
     coordinate_of_drive,
+    dry_frictions_of,
     free_loads_of,
     has_sense,
     is_dry,
@@ -38,7 +40,12 @@ from centrode.dynamics.forward_dynamics.initial_position import (
 )
 from centrode.dynamics.forward_dynamics.initial_state import drive_values, initial_state
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
+from centrode.dynamics.forward_dynamics.pressed_contacts import (
+    pressed_contacts_of,
+    refuse_undetermined_presses,
+)
 from centrode.dynamics.forward_dynamics.spanning_tree import JointCoordinate, spanning_tree_of
+from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import AppliedLoad, Constant, Friction, LoadTerm, MassesAndLoads, Situation
 from centrode.dynamics.simulation.multibody_motion import driving_efforts
 from centrode.errors import InputError, NotComputedYet
@@ -284,10 +291,30 @@ class LoadedMechanism:
 
     def reactions(self, found: LinearEquations) -> Array:
         """Forces of the closures (n, equations) that leave least to accelerate."""
-        rows = found.rows * self.units[None, None, :]
-        return np.asarray(
-            np.einsum("nkc,nc->nk", np.linalg.pinv(rows.transpose(0, 2, 1), RANK), found.force * self.units)
-        )
+        return self.reactions_to(found.rows, found.force)
+
+    def reactions_to(self, rows: Array, force: Array) -> Array:
+        """Forces of closures with G (n, equations, coordinates) under forces (n, coordinates), as in `reactions`."""
+        scaled = (rows * self.units).transpose(0, 2, 1)
+        return np.asarray(np.einsum("nkc,nc->nk", np.linalg.pinv(scaled, RANK), force * self.units))
+
+    @cached_property
+    def graph_of_presses(self) -> Graph:
+        """What presses joints with friction by a coefficient; see `pressed_friction`."""
+        return graph_of_presses(self)
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether dry friction may hold it."""
+        return bool(self.frictions or self.equations.contacts)
+
+    def held_by_friction(self, places: Array, found: LinearEquations, tangents: Array) -> Array:
+        """What friction can hold (n) along free directions (n, coordinates) at positions [J per unit of these]."""
+        if not self.equations.contacts:
+            slopes = np.abs(np.einsum("nfc,nc->nf", found.along, tangents))
+            return np.asarray(np.sum(slopes * np.abs(found.friction), axis=1))
+        load = np.einsum("nc,nc->n", found.force, tangents)
+        return pressed_joints(self, places, found).holding(load, tangents)
 
     def with_numbers_of(self, other: LoadedMechanism) -> EquationsOfMotion:
         """The equations of another mechanism of this structure, with wheels that mesh as they do here."""
@@ -445,11 +472,14 @@ def loaded_mechanism(
             raise InputError("[[drives]]", what, nearest(name, [drive.id for drive in mechanism.drives]))
     tree = spanning_tree_of(mechanism)
     position = position_of_description(mechanism, tree)
-    burden = MassesAndLoads.of(mechanism)
-    frictions = _dry_frictions(mechanism, burden.loads)
+    pressed = pressed_contacts_of(mechanism)
+    given = without_friction(mechanism)
+    burden = MassesAndLoads.of(given)
+    frictions = _dry_frictions(given, burden.loads)
+    _check_belts(pressed)
     kept_names = (*hold, *speeds)
     motors = [one for one in driving_efforts(mechanism, "0") if one.drive not in kept_names]
-    loads = free_loads_of(mechanism, burden.loads, motors)
+    loads = free_loads_of(given, burden.loads, motors)
     _check_times(loads)
     loads = (*loads, *_stop_pushes(mechanism))
     equations = EquationsOfMotion(
@@ -462,7 +492,13 @@ def loaded_mechanism(
     begin = drive_values(equations, position.coordinates)
     controls = controls_at_rest(mechanism, kept_names, _measured_values(mechanism, equations, position))
     kept = _kept_drives(mechanism, {name: (begin[name], speeds.get(name, 0.0)) for name in (*hold, *speeds)})
-    return LoadedMechanism(mechanism, replace(equations, kept=kept, controls=controls), position, frictions)
+    equations = replace(equations, kept=kept, controls=controls)
+    if pressed:
+        contacts = (*dry_frictions_of(given, burden.loads), *pressed)
+        equations = replace(equations, contacts=contacts)
+        every = replace(equations, dependent=frozenset(range(equations.equations)))
+        refuse_undetermined_presses(every, position.coordinates)
+    return LoadedMechanism(mechanism, equations, position, frictions)
 
 
 def _dry_frictions(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[DryFriction, ...]:
@@ -483,6 +519,13 @@ def _dry_frictions(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[
             held = term.amount.dry if static is None else Constant(static)
             found.append(DryFriction(load.label, replace(term, amount=held)))
     return tuple(found)
+
+
+def _check_belts(pressed: Sequence[Contact]) -> None:
+    for contact in pressed:
+        if contact.drift:
+            what = _("a belt that runs goes on pushing: there is no rest")
+            raise NotComputedYet(f"[[loads]] {contact.label}", what, _("simulate it"))
 
 
 def _stop_pushes(mechanism: Mechanism) -> Iterator[LoadAlong]:

@@ -36,10 +36,12 @@ AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 def posed_motion(loaded: LoadedMechanism, times: Array, places: Array) -> xr.Dataset:
     """Positions (n, coordinates) at times (n) [s] with the names of a simulation; nothing moves in them."""
+    if not len(places):
+        # of no position there are names all the same
+        return posed_motion(loaded, np.zeros(1), loaded.start[None]).isel(sample=slice(0))
     # accelerations are of no account, and without masses there would be none
-    equations = replace(
-        loaded.equations, masses=_unit_masses(loaded.mechanism, loaded), shafts=(), loads=(), controls=()
-    )
+    masses = _unit_masses(loaded.mechanism, loaded)
+    equations = replace(loaded.equations, masses=masses, shafts=(), loads=(), controls=(), contacts=())
     free = FreeMotion(loaded.mechanism, equations, loaded.position, loaded.mobility, 0)
     setting = MultibodySetting(loaded.mechanism, Simulation(duration=1.0))
     setting.__dict__["free"] = free
