@@ -1,4 +1,4 @@
-"""Numbers of loads, contacts, controllers, the machine, the simulation and gravity by paths: `loads.force H.vector.x`."""
+"""Numbers of loads, contacts, controllers, the machine, the simulation and gravity by their paths."""
 
 from __future__ import annotations
 

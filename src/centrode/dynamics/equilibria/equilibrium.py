@@ -17,6 +17,7 @@ from centrode.dynamics.equilibria.critical_values import (
     FOLD,
     HOPF,
     KINDS,
+    KINK,
     CriticalValue,
     EquilibriumBranch,
     branches,
@@ -129,7 +130,7 @@ def equilibrium(
     resting = resting_equilibria(loaded, found)
     held_up = found.curve is not None and loaded.has_friction and bool(friction_bands(found))
     if not len(found.places) and not resting and not held_up:
-        raise no_equilibrium(found.starts)
+        raise no_equilibrium(loaded, found.starts)
     if progress is not None:
         progress(0.5)
     followed = () if vary is None else _branches(description, held, found, vary, progress)
@@ -450,7 +451,7 @@ def _branch_variables(
     words = [motion.stability for one in followed for motion in one.motions]
     critical: list[CriticalValue] = []
     # where branches cross, one of them turns round: that is no fold
-    for kind in (BRANCH_POINT, FOLD, HOPF):
+    for kind in (BRANCH_POINT, FOLD, HOPF, KINK):
         for one in (one for branch in followed for one in branch.critical if one.kind == kind):
             if not any(_same_place(loaded, one, other) for other in critical):
                 critical.append(one)

@@ -100,15 +100,20 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
         found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
     places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
     if not len(places) and not loaded.mechanism.stops and not loaded.has_friction:
-        raise no_equilibrium(len(starts) if curve is None else len(curve.places))
+        raise no_equilibrium(loaded, len(starts) if curve is None else len(curve.places))
     count = len(curve.places) if curve is not None else len(starts)
     return Equilibria(loaded, places, count, curve)
 
 
-def no_equilibrium(count: int) -> MotionError:
+def no_equilibrium(loaded: LoadedMechanism, count: int) -> MotionError:
     """The error of a mechanism that stays nowhere, from so many positions."""
     what = _("no equilibrium is found from {count} positions")
     repair = _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)")
+    if loaded.states:
+        what = _("no equilibrium is found from {count} positions in which the states of controllers rest too")
+        repair = _(
+            "let the controllers reach their targets: see most, and what is between the drive and its target"
+        )
     return MotionError("", what.format(count=count), repair)
 
 
@@ -184,7 +189,8 @@ def _check_forces(loaded: LoadedMechanism, places: Array) -> None:
     """Refuse what stays everywhere, because nothing acts along what can move."""
     found, joints = loaded.at(places), loaded.joints
     force = np.einsum("nc,ncm->nm", found.force[:, :joints], loaded.free_directions(found.rows)[:, :joints])
-    scale = float(np.max(np.abs(found.force * loaded.units)[:, :joints], initial=0.0))
+    # a spring of no length has no direction there
+    scale = float(np.nanmax(np.abs(found.force * loaded.units)[:, :joints], initial=0.0))
     if not np.nanmax(np.abs(force), initial=0.0) > IDLE * scale:
         what = _("no load acts along what can move: every position is an equilibrium")
         raise InputError("[[loads]]", what, _("add gravity, springs or other loads"))

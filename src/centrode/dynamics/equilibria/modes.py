@@ -155,7 +155,7 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
     # what says why there is none
     all_found = stable_first(find_equilibria(loaded))
     if not len(all_found.places):
-        raise no_equilibrium(all_found.starts)
+        raise no_equilibrium(loaded, all_found.starts)
     return np.asarray(all_found.places[0])
 
 
