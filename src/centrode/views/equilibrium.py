@@ -400,11 +400,17 @@ def _chapter(results: EquilibriumResults) -> Chapter:
         )
     )
     pictures = tuple(Illustration(name) for name, _make in _pictures(results))
-    tables: list[Table] = [_table(found)]
+    tables: list[Table] = [_table(found)] if found.sizes["equilibrium"] else []
     if found.attrs["vary"]:
         tables.append(_critical_table(found))
+    more = ()
+    if "controller_output" in found:
+        words = Sentence(
+            "States of controllers are further unknowns: at rest their rates vanish, and each adds an eigenvalue."
+        )
+        more = (Paragraph(words),)
     sections = (
-        Section(NOTHING, (Paragraph(text), equations, FactTable(tuple(_facts(results))))),
+        Section(NOTHING, (Paragraph(text), equations, *more, FactTable(tuple(_facts(results))))),
         Section(NOTHING, tuple(tables)),
         Section(NOTHING, pictures),
     )

@@ -105,3 +105,11 @@ def test_an_equilibrium_is_followed_through_the_closing_of_a_stop() -> None:
     # between the buffers the moment is greatest where the spring is as stiff as the weight is soft
     fold = math.asin(2 / (0.5 * G))
     assert at["fold", round(fold, 4)] == pytest.approx(0.5 * G * math.cos(fold) + 2 * fold, abs=1e-9)
+
+
+def test_a_gap_in_which_nothing_acts_is_named() -> None:
+    flap = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}}, links={"OA": {**ROD, "angle": 0.5}}, stops=[{**BUFFER, "most": 1.5}]
+    )
+    with pytest.raises(ct.InputError, match="rad of OA: every position"):
+        ct.equilibrium(flap)

@@ -158,3 +158,39 @@ def test_the_controller_of_a_held_drive_gives_others_its_output() -> None:
     # the first gives 1.2 - 0.5
     exact = brentq(lambda a: 50 * (0.7 - a) - 0.5 * G * math.cos(a), 0, 1, xtol=1e-15)
     assert np.min(np.abs(found.drive_value.values[:, 1] - exact)) < 1e-12
+
+
+def test_a_cart_whose_controller_presses_it_into_a_buffer() -> None:
+    cart = ct.Mechanism(
+        gravity=[-G, 0],
+        frame={"points": {"O": [0, 0]}},
+        links={"cart": {"points": {"P": [0, 0]}, "mass": 3}},
+        guides=[{"point": "P", "on": "frame", "through": "O", "direction": [1, 0], "link": "cart"}],
+        drives=[{"guide": "P", "start": 0}],
+        controllers=[
+            {"name": "c", "drive": "P", "target": 0.3, "proportional": 500, "integral": 200, "derivative": 30}
+        ],
+        stops=[{"guide": "P", "most": 0.25, "stiffness": 1000}],
+        loads=[{"kind": "friction", "guide": "P", "coefficient": 0.1}],
+    )  # fmt: skip
+    found = ct.equilibrium(cart)
+    assert np.allclose(found.drive_value, 0.3, rtol=0, atol=1e-13)
+    assert np.allclose(found.controller_output, 3 * G + 1000 * 0.05)
+    assert np.allclose(found.restraint_force, -1000 * 0.05)
+    assert np.allclose(eigenvalues(found), roots(3, 30, 1500, 200), rtol=1e-11)
+    # whatever friction does, an integral comes to its target
+    assert np.all(np.abs(found.friction_reach) < 1e-12)
+
+
+def test_derivatives_of_a_motion_go_by_gains_too() -> None:
+    moved = arm(
+        {"target": 0.5, "proportional": 60, "integral": 40, "derivative": 12},
+        simulation={"duration": 0.5, "tolerance": 1e-11},
+    )
+    path = "controllers.hold.integral"
+    exact = ct.simulate(moved, at=[0.5], gradients=[path]).coordinate_gradient.values[0, 0, 0]
+    ends = [
+        float(ct.simulate(ct.with_value(moved, path, 40 + h), at=[0.5]).drive_value[0, 0])
+        for h in (1e-2, -1e-2)
+    ]
+    assert math.isclose(exact, (ends[0] - ends[1]) / 2e-2, rel_tol=1e-6)

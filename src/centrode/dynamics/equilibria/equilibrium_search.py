@@ -92,6 +92,8 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     else:
         starts = curve.places[::STATES_EVERY] if loaded.states else _starts_on(curve)
     _check_forces(loaded, curve.places if curve is not None else starts)
+    if curve is not None and not loaded.states:
+        _check_gap(curve)
     if loaded.states:
         # force and position say nothing without the states of controllers
         curve, starts = None, with_states(loaded, starts)
@@ -156,6 +158,22 @@ def _starts_on(curve: ConfigurationCurve | None) -> Array:
     least = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
     starts += list(curve.places[least])
     return np.array(starts)
+
+
+def _check_gap(curve: ConfigurationCurve) -> None:
+    """Refuse a stretch in which nothing acts, as between two buffers: each of its positions is an equilibrium."""
+    loaded = curve.loaded
+    idle = np.flatnonzero(np.abs(curve.force) <= IDLE * np.max(np.abs(curve.force), initial=0.0))
+    runs = [run for run in np.split(idle, np.flatnonzero(np.diff(idle) > 1) + 1) if len(run) > 2]
+    if not runs:
+        return
+    first, last = sorted(float(curve.places[k, 0]) for k in (runs[0][0], runs[0][-1]))
+    what = _(
+        "nothing acts from about {first:.3g} to {last:.3g} {unit} of {name}: every position there is an equilibrium"
+    )
+    one = loaded.coordinates[0]
+    text = what.format(first=first, last=last, unit=one.unit, name=one.name)
+    raise InputError("[[loads]]", text, _("add gravity, springs or other loads"))
 
 
 def has_kinks(loaded: LoadedMechanism) -> bool:

@@ -27,11 +27,12 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     settled_equilibria,
     with_states,
 )
+from centrode.dynamics.equilibria.friction_bands import friction_bands
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import mode_motion, posed_motion
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
 from centrode.dynamics.equilibria.steady_rotation import steady_rotation
-from centrode.errors import InputError
+from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -154,6 +155,9 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
             return np.asarray(found[0])
     # what says why there is none
     all_found = stable_first(find_equilibria(loaded))
+    if not len(all_found.places) and friction_bands(all_found):
+        what = _("friction alone holds it, and what it holds has no small motions")
+        raise MotionError("", what, _("omit the friction, or let springs or weights hold it"))
     if not len(all_found.places):
         raise no_equilibrium(loaded, all_found.starts)
     return np.asarray(all_found.places[0])
