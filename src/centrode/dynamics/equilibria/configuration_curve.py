@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
+from centrode.dynamics.equilibria.pressed_friction import held_by_friction
 from centrode.dynamics.load_coordinates import Spin, Turn
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -56,7 +57,7 @@ class ConfigurationCurve:
     @cached_property
     def friction(self) -> Array:
         """Greatest generalised dry friction along the curve (n), in the unit of the force."""
-        return self.loaded.held_by_friction(self.places, self.equations, self.tangents)
+        return held_by_friction(self.loaded, self.places, self.equations, self.tangents)
 
 
 def repeats_with_position(loaded: LoadedMechanism) -> bool:

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from centrode.dynamics.equilibria.configuration_curve import STEP, ConfigurationCurve, same_position
 from centrode.dynamics.equilibria.equilibrium_search import Equilibria
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
-from centrode.dynamics.equilibria.pressed_friction import pressed_joints
+from centrode.dynamics.equilibria.pressed_friction import held_by_friction, pressed_joints
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -127,7 +127,7 @@ def _spare(loaded: LoadedMechanism, place: Array) -> float:
     """How much more friction could hold [J per unit along the free direction]; below zero it does not."""
     found = loaded.at(place[None])
     free = loaded.free_directions(found.rows)[:, :, 0]
-    friction = float(loaded.held_by_friction(place[None], found, free)[0])
+    friction = float(held_by_friction(loaded, place[None], found, free)[0])
     return friction - abs(float(found.force[0] @ free[0]))
 
 

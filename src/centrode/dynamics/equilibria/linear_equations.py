@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.equilibria.controllers_at_rest import controls_at_rest
-from centrode.dynamics.equilibria.pressed_friction import graph_of_presses, pressed_joints
+from centrode.dynamics.equilibria.friction_openings import graph_of_openings
 from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, coordinate_of_part
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
@@ -299,22 +299,14 @@ class LoadedMechanism:
         return np.asarray(np.einsum("nkc,nc->nk", np.linalg.pinv(scaled, RANK), force * self.units))
 
     @cached_property
-    def graph_of_presses(self) -> Graph:
-        """What presses joints with friction by a coefficient; see `pressed_friction`."""
-        return graph_of_presses(self)
+    def graph_of_openings(self) -> Graph:
+        """What friction by coefficients acts along, and what openings of its joints ask for."""
+        return graph_of_openings(self.traced_equations.equations, len(self.states), TIME)
 
     @property
     def has_friction(self) -> bool:
         """Whether dry friction may hold it."""
         return bool(self.frictions or self.equations.contacts)
-
-    def held_by_friction(self, places: Array, found: LinearEquations, tangents: Array) -> Array:
-        """What friction can hold (n) along free directions (n, coordinates) at positions [J per unit of these]."""
-        if not self.equations.contacts:
-            slopes = np.abs(np.einsum("nfc,nc->nf", found.along, tangents))
-            return np.asarray(np.sum(slopes * np.abs(found.friction), axis=1))
-        load = np.einsum("nc,nc->n", found.force, tangents)
-        return pressed_joints(self, places, found).holding(load, tangents)
 
     def with_numbers_of(self, other: LoadedMechanism) -> EquationsOfMotion:
         """The equations of another mechanism of this structure, with wheels that mesh as they do here."""

@@ -12,25 +12,20 @@ with Unilateral Contacts, 1996, chapter 6.)
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.forward_dynamics.contacts import FREE, Contact
+from centrode.dynamics.equilibria.linear_equations import TIME, LinearEquations, LoadedMechanism
+from centrode.dynamics.forward_dynamics.contacts import Contact
 from centrode.dynamics.forward_dynamics.reaction_friction import pressing_force
 from centrode.dynamics.kinetostatics.friction import FrictionLaw, FrictionRule
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
-from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import evaluate
-
-if TYPE_CHECKING:
-    from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-TIME = "time"
 MOST_STEPS, SETTLED = 60, 1e-13
 """Steps of Newton's method for forces of friction, and share of the load at which they have settled."""
 DIFFERENCE = 1e-7
@@ -131,32 +126,6 @@ class PressedJoints:
         return FrictionLaw(factor, self.base, moving, rules).feedback
 
 
-def graph_of_presses(loaded: LoadedMechanism) -> Graph:
-    """What contacts act along, and what an opening of each pressed joint asks for."""
-    equations = loaded.traced_equations.equations
-    q = [variable(f"coordinate {k}") for k in range(loaded.size)]
-    terms = equations.terms(
-        EXPRESSIONS,
-        equations.tree.values(EXPRESSIONS, q[: loaded.joints]),
-        [0.0] * loaded.joints,
-        variable(TIME),
-        [FREE] * len(equations.contacts),
-        q[loaded.joints :],
-    )
-    outputs: dict[str, Node] = {}
-    for row, number in equations.contact_rows:
-        outputs |= {f"along {number} {i}": as_node(x) for i, x in terms.rows[row].items()}
-    for k, ways in terms.openings.items():
-        for j, way in enumerate(ways):
-            outputs[f"force {k} {j}"] = as_node(way.force)
-            outputs |= {f"mass {k} {j} {i}": as_node(x) for i, x in way.mass.items()}
-            outputs |= {
-                f"rows {k} {j} {i}": as_node(x) for i, x in way.rows.items() if i < equations.equations
-            }
-            outputs |= {f"own {k} {j} {i}": as_node(x) for i, x in way.along.items()}
-    return Graph(outputs)
-
-
 def pressed_joints(loaded: LoadedMechanism, places: Array, found: LinearEquations) -> PressedJoints:
     """What presses joints at positions (n, coordinates), at which `found` are the equations."""
     count, e, c, k = len(places), loaded.equations.equations, loaded.size, len(loaded.equations.contacts)
@@ -166,7 +135,7 @@ def pressed_joints(loaded: LoadedMechanism, places: Array, found: LinearEquation
         "along": (k, c), "force": (k, 2), "mass": (k, 2, c), "rows": (k, 2, e), "own": (k, 2, k),
     }  # fmt: skip
     arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
-    for name, x in evaluate(loaded.graph_of_presses, values).items():
+    for name, x in evaluate(loaded.graph_of_openings, values).items():
         kind, *at = name.split()
         arrays[kind][(slice(None), *map(int, at))] = x
     along = arrays["along"]
@@ -197,3 +166,14 @@ def _moving_gain(loaded: LoadedMechanism, found: LinearEquations, arrays: dict[s
     solved = np.linalg.pinv(matrix, 1e-12) @ (right * units[:, None]) * units[:, None]
     whole = np.concatenate([arrays["mass"][:, :, :, :joints], arrays["rows"]], axis=3)
     return np.asarray(np.einsum("nkjx,nxi->nkji", whole, solved) - arrays["own"])
+
+
+def held_by_friction(
+    loaded: LoadedMechanism, places: Array, found: LinearEquations, tangents: Array
+) -> Array:
+    """What friction can hold (n) along free directions (n, coordinates) at positions [J per unit of these]."""
+    if not loaded.equations.contacts:
+        slopes = np.abs(np.einsum("nfc,nc->nf", found.along, tangents))
+        return np.asarray(np.sum(slopes * np.abs(found.friction), axis=1))
+    load = np.einsum("nc,nc->n", found.force, tangents)
+    return pressed_joints(loaded, places, found).holding(load, tangents)
