@@ -237,11 +237,6 @@ def _placed_goal(wanted: Synthesis) -> MechanismGoal:
 
 def _function_goal(mechanism: Mechanism, wanted: Synthesis) -> MechanismGoal:
     """An output that follows the drive, up to a constant."""
-    if wanted.formula is not None:
-        what = _("a function of a mechanism of a file is a table")
-        raise InputError(
-            "[synthesis] formula", what, _("give targets: values of the drive, and of the output")
-        )
     rows = np.array(wanted.rows, dtype=np.float64)
     output = output_name(mechanism, wanted)
 

@@ -24,7 +24,7 @@ from centrode.errors import CentrodeError, InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import value_text
+from centrode.model.reading import nearest, value_text
 from centrode.model.similarity import Similarity, apply_similarity
 from centrode.model.units import read_quantity
 from centrode.sweeps.designs import kind_of
@@ -50,6 +50,8 @@ from centrode.synthesis.requests import Synthesis, SynthesisTask
 
 STARTS = 400
 """Mechanisms between the bounds that are looked at."""
+LOOKED_AT = 40
+"""Of them, to say how near the nearest is where none moves."""
 REFINED = 24
 """The best of them go on."""
 SAMPLES = 181
@@ -58,8 +60,12 @@ FINE_SAMPLES = 1441
 SOFT, SHARP = 30.0, 1e4
 """Weights, at first and at the end, of a constraint that is exceeded by its own size against a target that is missed by
 the size of the path: what is left of it falls with the square."""
+ROUGH, NEAR, EXACT = 1e-5, 1e-8, 1e-14
+"""Tolerances of least squares: with soft constraints, with sharp ones, and without any or at the end."""
+STEPS = 100
 SHARE = 3
 """Starts that one process refines after the other."""
+TURN = 2 * math.pi
 MOST_SCALE = math.log(1e6)
 """Logarithm of the scale by which a mechanism may become larger or smaller."""
 Progress: TypeAlias = Callable[[float], None]
@@ -78,6 +84,7 @@ class _MechanismSearch:
         self.task, self.samples = task, SAMPLES if samples is None else samples
         self.names, self.low, self.high = _ranges(mechanism, wanted)
         self.goal = mechanism_goal(mechanism, wanted)
+        _check_crank(mechanism, wanted)
         self.is_placed = self.goal.begin is not None
         if self.goal.place is None and not self.is_placed:
             _narrow_pivots(mechanism, wanted, self.names, self.low, self.high)
@@ -89,7 +96,7 @@ class _MechanismSearch:
         else:
             self.moved = solver(mechanism, self.names, None, at=at, outputs=outputs)
         # targets with times say nothing of what is between them: constraints have the whole motion
-        self.whole = (
+        self.whole: Solver | None = (
             solver(mechanism, self.names, self.samples, outputs=kept) if at is not None and kept else None
         )
 
@@ -199,7 +206,10 @@ def mechanism_answers(
     starts = _starts(search, wanted.seed, stop)
     if not starts:
         what = _("no mechanism between the bounds moves all along")
-        raise MotionError("[synthesis.free]", what, _("choose other ranges, or another start of the drive"))
+        repair = _(
+            "the nearest does over {share:.0f} % of its motion; choose other ranges, or another start of the drive"
+        )
+        raise MotionError("[synthesis.free]", what, repair.format(share=100 * _moving_share(search)))
     progress(0.3)
     shares = [starts[k : k + SHARE] for k in range(0, min(len(starts), REFINED), SHARE)]
     fitted: dict[int, list[tuple[float, Array]]] = {}
@@ -270,6 +280,15 @@ def _narrow_pivots(
                 raise InputError(where, what.format(name=value_text(name)), repair)
 
 
+def _check_crank(mechanism: Mechanism, wanted: Synthesis) -> None:
+    """Raise InputError where the link that shall turn fully is not driven."""
+    crank = wanted.constraints.crank
+    driven = [drive.link for drive in mechanism.drives if drive.link is not None]
+    if crank is not None and crank not in driven:
+        what = _("no drive turns the link {name}").format(name=value_text(crank))
+        raise InputError("[synthesis.constraints] crank", what, nearest(crank, driven))
+
+
 def _ranges(mechanism: Mechanism, wanted: Synthesis) -> tuple[list[str], Array, Array]:
     if mechanism.space != "plane":
         what = _("mechanisms of files are synthesised in the plane")
@@ -289,7 +308,8 @@ def _ranges(mechanism: Mechanism, wanted: Synthesis) -> tuple[list[str], Array, 
         low, high = (read_quantity(value, kind, where) for value in given)
         if not low < high:
             what = _("the range goes from {low:g} to {high:g}").format(low=low, high=high)
-            raise InputError(where, what, _("exchange them"))
+            equal = _("give two different numbers, or write the number into the mechanism")
+            raise InputError(where, what, equal if low == high else _("exchange them"))
         names.append(path)
         ends.append((low, high))
     low_ends, high_ends = np.array(ends).T
@@ -315,6 +335,21 @@ def _starts(search: _MechanismSearch, seed: int, stop: Callable[[], bool]) -> li
     return [begun for _cost, _index, begun in sorted(costs, key=lambda one: one[:2])]
 
 
+def _moving_share(search: _MechanismSearch) -> float:
+    """The greatest part of its motion over which one of the first starts moves."""
+    best = 0.0
+    for values in np.random.default_rng(search.task.synthesis.seed).uniform(
+        search.low, search.high, (LOOKED_AT, len(search.low))
+    ):
+        try:
+            named = dict(zip(search.names, values.tolist(), strict=True))
+            status = motion(describe_moved(search.moved, named), SAMPLES).status.to_numpy()
+        except CentrodeError:
+            continue
+        best = max(best, float((status == int(Status.OK)).mean()))
+    return best
+
+
 def _refine_share(
     search: _MechanismSearch, starts: Sequence[Array], stop: Callable[[], bool] = lambda: False
 ) -> list[tuple[float, Array]]:
@@ -329,13 +364,15 @@ def _refine_share(
 
 def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
     """The next minimum from a start; where constraints press against it, as sharply as they are checked."""
-    cost, values = _descend(search, start, SOFT)
-    if math.isfinite(cost) and search.kept.outputs:
-        return _descend(search, values, SHARP)
-    return cost, values
+    if not search.kept.outputs:
+        return _descend(search, start, SOFT)
+    cost, values = _descend(search, start, SOFT, ROUGH)
+    return _descend(search, values, SHARP, NEAR) if math.isfinite(cost) else (cost, values)
 
 
-def _descend(search: _MechanismSearch, start: Array, weight: float) -> tuple[float, Array]:
+def _descend(
+    search: _MechanismSearch, start: Array, weight: float, tolerance: float = EXACT
+) -> tuple[float, Array]:
     """The next minimum from a start, in units of the ranges; a step to where nothing moves is taken back."""
     low, width, least_place, greatest_place = search.units
     best = start
@@ -374,7 +411,8 @@ def _descend(search: _MechanismSearch, start: Array, weight: float) -> tuple[flo
         return by
 
     bounds = (least_place, greatest_place)
-    least_squares(rows, inside, slopes, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=200)
+    ends = {"xtol": tolerance, "ftol": tolerance, "gtol": EXACT}
+    least_squares(rows, inside, slopes, bounds=bounds, max_nfev=STEPS, **ends)
     return least, best
 
 
@@ -388,15 +426,17 @@ def _answer(search: _MechanismSearch, values: Array) -> tuple[Answer | None, str
         if similarity is not None:
             mechanism = apply_similarity(mechanism, similarity)
         data = motion(mechanism, CHECKED_PLACES)
+        instants = np.asarray(mechanism.motion_parameter.instants(data))
         if similarity is not None:
             # the same part of the same motion, counted as the moved description counts it
-            instants = np.asarray(mechanism.motion_parameter.instants(data))
             ends, own = instants[[0, -1]], search.moved.parameter[[0, -1]]
             drive = ends[0] + (drive - own[0]) * (ends[1] - ends[0]) / (own[1] - own[0])
         traced = _trace(mechanism, wanted, drive, data) if wanted.kind in ("path", "motion") else None
     except CentrodeError as failure:
         return None, failure.what
     branch = bool((data.status.to_numpy() != int(Status.OK)).any())
+    # a motion over less than a turn proves no crank
+    branch |= wanted.constraints.crank is not None and float(np.ptp(instants)) < TURN * (1 - 1e-9)
     transmission = least_angle(mechanism)
     size = box_around(mechanism, data.position.to_numpy())
     errors = missed if traced is None else traced.errors
