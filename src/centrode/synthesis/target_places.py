@@ -19,14 +19,14 @@ from centrode.synthesis.curve_places import TINY, ordered_places
 from centrode.synthesis.four_bars import Array, Complex
 from centrode.synthesis.measures import hermite
 
-FOOT_STEPS, SHIFT_STEPS = 8, 30
+FOOT_STEPS, SHIFT_STEPS = 30, 30
 """Steps along the motion to the nearest places, and to the best common shift."""
 COARSE = 180
 """Cells of which the nearest ones are chosen; finer samples serve the places in them."""
 BESIDE = 0.6
 """Cells by which the nearest place may lie beside the cell of which the chord is nearest."""
-SETTLED = 1e-12
-"""Of a common shift, in cells."""
+SETTLED = 1e-11
+"""Step in cells after which places do not move any more."""
 SCANNED = 60
 """Targets by which shifts and alignments are compared, at most."""
 BEGINNINGS, WINDOW = 36, 0.08
@@ -171,7 +171,10 @@ def nearest_places(motion: SampledMotion, targets: BodyTargets, ordered: bool) -
     for _step in range(FOOT_STEPS):
         rows, rates = motion.at(places)
         square = np.maximum((rates**2).sum(axis=1), TINY)
+        before = places
         places = np.clip(places - (targets.misses(rows) * rates).sum(axis=1) / square, low, high)
+        if np.abs(places - before).max() < SETTLED:
+            break
     rows, rates = motion.at(places)
     inner = (places > low) & (places < high)
     length = np.maximum(np.linalg.norm(rates, axis=1), TINY)
