@@ -101,7 +101,12 @@ def mechanism_constraints(
 
 def box_output(point: str, axis: str) -> str:
     """Name among the outputs of a coordinate of a point where the mechanism stands."""
-    return identifier("box", point, axis)
+    return f"box_{_spell(point)}_{axis}"
+
+
+def _spell(name: str) -> str:
+    """A name of a point or a link in the letters that the name of an output may have."""
+    return name.encode().hex()
 
 
 def link_ends(mechanism: Mechanism) -> dict[str, tuple[str, str]]:
@@ -254,13 +259,13 @@ def _dyads(mechanism: Mechanism, outputs: dict[str, str]) -> Iterator[tuple[Line
 
     def guide(on: str, name: str) -> Line:
         if on != FRAME:
-            outputs[identifier("line", on)] = identifier("angle", on)
-        return _RailLine(along[name], "" if on == FRAME else identifier("line", on))
+            outputs[f"line_{_spell(on)}"] = identifier("angle", on)
+        return _RailLine(along[name], "" if on == FRAME else f"line_{_spell(on)}")
 
     def arm(centre: str, point: str, turn: complex) -> Line:
         ends = (centre, point)
         outputs.update(
-            {identifier("line", p, axis): identifier("position", p, axis) for p in ends for axis in "xy"}
+            {f"line_{_spell(p)}_{axis}": identifier("position", p, axis) for p in ends for axis in "xy"}
         )
         return _ArmLine(centre, point, turn)
 
@@ -291,7 +296,7 @@ class _ArmLine:
     def __call__(self, values: Numbers, by: Numbers) -> tuple[Complex, Complex]:
         """Complex directions and their derivatives."""
         ends = [
-            numbers[identifier("line", point, "x")] + 1j * numbers[identifier("line", point, "y")]
+            numbers[f"line_{_spell(point)}_x"] + 1j * numbers[f"line_{_spell(point)}_y"]
             for numbers in (values, by)
             for point in (self.end, self.start)
         ]
@@ -336,9 +341,11 @@ class BrokenConstraint:
         if self.own is None or self.limit is None:
             what = _("the nearest breaks {what}").format(what=self.name)
         else:
-            unit = f" {self.unit}" if self.unit else ""
-            what = _("the nearest breaks {what}: {own:.5g}{unit}, where {limit:.5g}{unit} is the limit")
-            what = what.format(what=self.name, own=self.own, limit=self.limit, unit=unit)
+            what = {
+                "m": _("the nearest breaks {what}: {own:.5g} m, where {limit:.5g} m is the limit"),
+                "deg": _("the nearest breaks {what}: {own:.5g} deg, where {limit:.5g} deg is the limit"),
+            }.get(self.unit, _("the nearest breaks {what}: {own:.5g}, where {limit:.5g} is the limit"))
+            what = what.format(what=self.name, own=self.own, limit=self.limit)
         if error is None:
             return what
         return what + "; " + _("it misses the targets by {miss:.3g} m").format(miss=error)
