@@ -59,8 +59,8 @@ def synthesis() -> Iterator[Row]:
         timed = {"kind": "path", "targets": table, "timing": timing, "place": "given", "free": FIVE_FREE}
         took, best = _search(timed)
         yield _row(f"five points, timing {timing}", took, best.sum_of_squares, known)
-    for name, (known, wanted) in FUNCTIONS.items():
-        took, best = _search({"kind": "function", **wanted})
+    for name, (known, function) in FUNCTIONS.items():
+        took, best = _search({"kind": "function", **function})
         yield _row(f"function {name}", took, float(np.degrees(best.greatest)), known)
 
 
@@ -69,7 +69,7 @@ def _points(name: str) -> list[list[float]]:
     return points
 
 
-def _search(wanted: dict[str, object]) -> tuple[float, Answer]:
+def _search(wanted: Mapping[str, object]) -> tuple[float, Answer]:
     begin = time.perf_counter()
     found = ct.synthesise({"synthesis": {"topology": "crank-rocker", **wanted}})
     return time.perf_counter() - begin, found.answers[0]

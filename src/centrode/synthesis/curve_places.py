@@ -59,8 +59,8 @@ def ordered_places(
     ways = (np.arange(places) + cuts[:, None]) % places
     ways = np.stack([ways, places - 1 - ways])
     costs, cells = monotone_places(distance[:, ways])
-    best = np.unravel_index(np.argmin(costs), costs.shape)
-    chosen = ways[best][cells[(slice(None), *best)]]
+    sense, cut = divmod(int(np.argmin(costs)), len(cuts))
+    chosen = ways[sense, cut][cells[:, sense, cut]]
     return chosen, part[count, chosen]
 
 
