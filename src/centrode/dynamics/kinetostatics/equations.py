@@ -8,6 +8,7 @@ of that balance, along the sphere as in the plane.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -618,10 +619,12 @@ def _where(regular: Mask, matrix: Array) -> Array:
     return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
 
-def _norm(matrix: npt.NDArray[Any]) -> Any:
+def _norm(matrix: Array) -> Array:
+    """The greatest row sum of sizes: row by row, as memory for all sizes at once would be fresh at every call."""
+    ones = np.ones(matrix.shape[-1])
     # one product adds up short rows faster than a sum does
-    sums = np.abs(matrix).reshape(-1, matrix.shape[-1]) @ np.ones(matrix.shape[-1])
-    return sums.reshape(matrix.shape[:-1]).max(axis=-1)
+    sums = (np.abs(matrix[..., row, :]) @ ones for row in range(matrix.shape[-2]))
+    return functools.reduce(np.maximum, sums)
 
 
 def _pseudo(matrix: Array) -> tuple[Array, Array]:
