@@ -57,6 +57,8 @@ LONGEST_NUMBER = 24
 POINTS = 72.0 / 25.4
 """Points in a millimetre."""
 STYLE_IMPORT = '#import "style.typ": *'
+LETTERS = 1024
+"""Outlines that are kept: most figures of a document have the same letters."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -220,6 +222,7 @@ def with_cubic_letters(svg: bytes) -> bytes:
     return _OUTLINE.sub(lambda found: found[1] + _cubic(found[2]) + found[3], svg)
 
 
+@functools.lru_cache(LETTERS)
 def _cubic(outline: bytes) -> bytes:
     """The outline of a letter with cubic curves for parabolas; as it is where it is not what matplotlib writes."""
     steps = _STEP.findall(outline)
