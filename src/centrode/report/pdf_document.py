@@ -394,7 +394,10 @@ def _pieces(formula: str) -> str:
 
 
 def _column(head: str, cells: Sequence[str], number: bool) -> str:
-    """What the width of a column is measured by: its head, the words that may not be cut, its longest cells."""
+    """What the width of a column is measured by: its head, the words that may not be cut, its longest cells.
+
+    The words of its head are the most lines that it has.
+    """
     longest = sorted(set(cells), key=lambda cell: (-len(cell), cell))[:WIDEST] or [""]
     words = _words(head)
     if not number:
@@ -402,6 +405,7 @@ def _column(head: str, cells: Sequence[str], number: bool) -> str:
         words += sorted(found, key=lambda word: (-len(word), word))[:WIDEST]
     fields = {
         "head": content(head),
+        "lines": f"{max(len(_words(head)), 1)}",
         "words": _array(words or [quote("")]),
         "longest": _array([_cell(cell) for cell in longest]),
         "number": "true" if number else "false",
