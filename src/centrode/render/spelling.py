@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, decimal_mark, ngettext
@@ -247,11 +247,18 @@ class PrintSpelling(PlainSpelling):
 
 
 class ScreenSpelling(PrintSpelling):
-    """As on paper, with the decimal mark of the language; a semicolon parts coordinates where that is a comma."""
+    """As on paper, with the decimal mark of the language; a semicolon parts coordinates where that is a comma.
 
-    def __init__(self, display: Display | None) -> None:
+    `sentences` is what the page makes of a translated sentence before its holes are filled.
+    """
+
+    def __init__(self, display: Display | None, sentences: Callable[[str], str] = str) -> None:
         super().__init__(display)
         self.decimal = decimal_mark()
+        self.sentences = sentences
+
+    def _fill_message(self, message: str, values: Mapping[str, Text]) -> str:
+        return super()._fill_message(self.sentences(message), values)
 
     def _digits(self, value: float, digits: str) -> str:
         return super()._digits(value, digits).replace(".", self.decimal)
