@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 
 DASH = "–"
 """Stands for a number that is not there."""
+SCREEN_DIGITS = 6
+"""Significant digits of a number that people read on a screen; its files have all that it has."""
+LONG_FORMAT = re.compile(r"\.(?:[7-9]|1\d)g$")
+"""Formats with more digits than a screen shows."""
 
 
 class Spelling(ABC):
@@ -261,7 +265,8 @@ class ScreenSpelling(PrintSpelling):
         return super()._fill_message(self.sentences(message), values)
 
     def _digits(self, value: float, digits: str) -> str:
-        return super()._digits(value, digits).replace(".", self.decimal)
+        read = LONG_FORMAT.sub(f".{SCREEN_DIGITS}g", digits)
+        return super()._digits(value, read).replace(".", self.decimal)
 
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place as "(1.25, 0) m" or "(1,25; 0) m"."""
