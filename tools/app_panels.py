@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from PIL import Image, ImageDraw
+from playwright.sync_api import TimeoutError as LateError
 from playwright.sync_api import sync_playwright
 
 from centrode.model.examples import example_text
@@ -293,9 +294,10 @@ def search(window: Any, kind: str) -> None:
 
 def walk(running: Any, address: str, found: Findings, arguments: argparse.Namespace) -> None:
     """Every panel and page in every language, by day and at night, window by window."""
+    only_pages = arguments.topics and not set(arguments.topics) - set(PAGES)
     for language in arguments.languages:
         seen: set[str] = set()
-        for name in arguments.descriptions:
+        for name in () if only_pages else arguments.descriptions:
             link = f"{address}#m={packed(description(name))}"
             with open_window(running, link, language, found, arguments) as window:
                 until(window, "document.querySelectorAll('[role=tab]:not(.away)').length > 2")
@@ -314,9 +316,14 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
             page, _hyphen, kind = name.partition("-")
             where = address.replace("/?", f"/{page}?")
             with open_window(running, where, language, found, arguments) as window:
-                if page == "synthesis":
-                    search(window, kind or "path")
-                window.wait_for_selector(there)
+                try:
+                    if page == "synthesis":
+                        search(window, kind or "path")
+                    window.wait_for_selector(there)
+                except LateError:
+                    found.wrong[name, "no answer in time"].append(language)
+                    print(f"{name}: no answer in time [{language}]", flush=True)
+                    continue
                 settle(window)
                 look_at_both(window, name, language, found, arguments, f"#{page}")
 
