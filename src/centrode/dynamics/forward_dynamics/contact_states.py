@@ -15,7 +15,8 @@ from centrode.dynamics.forward_dynamics.contacts import FRICTION, Contact, press
 from centrode.dynamics.forward_dynamics.motion_functions import MotionFunctions
 from centrode.dynamics.forward_dynamics.motion_problem import GUARD, INDEPENDENCE, UNIQUE, Guard, guards_of
 from centrode.dynamics.forward_dynamics.pressed_modes import JointPresses
-from centrode.dynamics.load_coordinates import Turn
+from centrode.dynamics.load_coordinates import is_angular
+from centrode.dynamics.state import length_unit
 from centrode.numerics.initial_value_problems import HEADER
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -91,8 +92,8 @@ class ContactStates:
     @cached_property
     def units(self) -> Array:
         """What coordinates of contacts are compared with: 1 rad, or the greatest length."""
-        scale = float(self.motion.equations.numbers.scale)
-        return np.array([1.0 if isinstance(c.coordinate, Turn) else scale for c in self.contacts])
+        scale = float(self.motion.equations.numbers.scale) * length_unit(self.motion.equations.tree.mechanism)
+        return np.array([1.0 if is_angular(c.coordinate) else scale for c in self.contacts])
 
     @cached_property
     def numbers(self) -> list[float]:

@@ -18,7 +18,7 @@ from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
 from centrode.dynamics.forward_dynamics.motion_steps import KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
-from centrode.dynamics.load_coordinates import Turn
+from centrode.dynamics.load_coordinates import is_angular
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
@@ -369,7 +369,7 @@ def _links_and_points(setting: MultibodySetting, course: Trajectory) -> dict[str
             ("slide", "slide_velocity", "slide_acceleration"),
             ("guide",),
             (course.slides, course.slide_speeds, course.slide_accelerations),
-            1.0,
+            unit,
         ),
     ]
     turning = (course.angles, course.angular_velocities, course.angular_accelerations)
@@ -452,7 +452,7 @@ def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variab
     if not contacts:
         return {}
     force = vocabulary_variable("restraint_force", ("sample", "contact"), course.contact_forces)
-    angular = [isinstance(contact.coordinate, Turn) for contact in contacts]
+    angular = [is_angular(contact.coordinate) for contact in contacts]
     force[2]["units"] = _joined_units(["N m" if turns else "N" for turns in angular])
     modes = course.contact_modes.astype(np.int8)
     return {
