@@ -311,6 +311,11 @@ def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     """What happened: change points that were passed, impacts, what stuck and slipped."""
     times = run["occasion_time"].values.tolist()
     yield from event_facts(run)
+    if "friction_at_impacts" in run.attrs:
+        yield Fact(
+            Sentence("friction at impacts"),
+            Sentence("takes no impulse: what the reactions of an impact would add is left out"),
+        )
     yield from occasion_facts(run, KINDS, [event_text(run, number) for number in range(len(times))])
 
 

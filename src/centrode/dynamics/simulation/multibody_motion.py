@@ -16,7 +16,7 @@ import xarray as xr
 from centrode.dynamics.forward_dynamics.contacts import FRICTION
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
-from centrode.dynamics.forward_dynamics.motion_steps import KINDS
+from centrode.dynamics.forward_dynamics.motion_steps import IMPACT, KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
 from centrode.dynamics.load_coordinates import is_angular
 from centrode.dynamics.loads import EnergyClass
@@ -496,6 +496,12 @@ def _impacts(course: Trajectory) -> dict[str, Variable]:
     return found
 
 
+def _rubs_at_impacts(setting: MultibodySetting, course: Trajectory) -> bool:
+    """Whether there are impacts, and friction by coefficients, whose share in their impulses is left out."""
+    presses = any(contact.pressing is not None for contact in setting.free.equations.contacts)
+    return presses and any(event.kind == IMPACT for event in course.events)
+
+
 def _attributes(
     setting: MultibodySetting, course: Trajectory, variables: Mapping[str, Variable]
 ) -> dict[str, Any]:
@@ -517,6 +523,7 @@ def _attributes(
         "steps": course.steps,
         "driving": settings.law,
         "conditions": "\n".join(one.label for one in setting.free.equations.conditions),
+        **({"friction_at_impacts": "no impulse"} if _rubs_at_impacts(setting, course) else {}),
         "work_sorts": " ".join(work_sorts(setting.free)[name] for name in course.works),
         "worst_residual": float(np.max(variables["residual"][1], initial=0.0)),
         "worst_energy_residual": float(np.nanmax(np.abs(course.energy_residual), initial=0.0)),
