@@ -189,7 +189,7 @@ def _of_contact(
         if not rest.startswith(f"{name}."):
             continue
         number = names.index(name)
-        known, key = numbers_of_contact(contacts[number]), rest[len(name) + 1 :]
+        known, key = numbers_of_contact(contacts[number], mechanism.space), rest[len(name) + 1 :]
         if key not in known:
             raise _unknown(path, key, list(known))
         return PlaceOfNumber(tables[number], key, known[key])
@@ -210,11 +210,11 @@ def _of_controller(
     raise _unknown(path, "" if rest in names else rest.partition(".")[0], names)
 
 
-def numbers_of_contact(contact: Stop | Clamp) -> Mapping[str, str]:
+def numbers_of_contact(contact: Stop | Clamp, space: str) -> Mapping[str, str]:
     """Numbers of a stop or a clamp, and the kind of each."""
     if isinstance(contact, Clamp):
         return {"until": "time"}
-    angular, place = ("angular ", "angle") if contact.measures_angle else ("", "length")
+    angular, place = ("angular ", "angle") if contact.measures_angle(space) else ("", "length")
     return {
         "least": place,
         "most": place,

@@ -74,8 +74,10 @@ def panel_blocks(
     blocks: list[JSON] = []
     if sheet.heading != NOTHING:
         blocks.append({"kind": "heading", "text": writer.spelling.text(sheet.heading)})
-    if sheet.facts:
-        blocks.append(writer.facts(sheet.facts))
+    listed = any(player.marks for player in panel_motions(sheet))
+    facts = [fact for fact in sheet.facts if not (listed and fact.is_marked)]
+    if facts:
+        blocks.append(writer.facts(facts))
     for block in sheet.printed:
         blocks += writer.section(block) if isinstance(block, Section) else writer.block(block)
     if sheet.failure is not None:
@@ -283,6 +285,7 @@ class _BlockWriter:
     def _plot(self, name: str, plot: Plot) -> Iterator[JSON]:
         across, x = self._axis(plot.abscissa.label)
         values = _numbers(plot.abscissa.values * across)
+        ends = None if plot.abscissa.ends is None else [_number(x * across) for x in plot.abscissa.ends]
         title = self.spelling.text(plot.title)
         by_drive = plot.abscissa.label.unit in ("rad", "m", "s")
         for panel in (panel for row in plot.rows for panel in row if panel.curves):
@@ -301,7 +304,7 @@ class _BlockWriter:
                 "kind": "plot",
                 "name": name,
                 "title": title,
-                "x": {**x, "values": values},
+                "x": {**x, "values": values, "ends": ends},
                 "y": y,
                 "curves": curves,
                 "cursor": "drive" if by_drive else None,
