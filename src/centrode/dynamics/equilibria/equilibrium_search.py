@@ -22,7 +22,7 @@ from centrode.dynamics.equilibria.configuration_curve import (
     same_position,
 )
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
-from centrode.dynamics.forward_dynamics.contacts import StopPush, coordinate_of_part
+from centrode.dynamics.forward_dynamics.contacts import StopPush, stop_coordinate
 from centrode.dynamics.loads import Situation
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
@@ -320,7 +320,7 @@ def stop_values(loaded: LoadedMechanism, places: Array) -> Array:
     tree, places = loaded.equations.tree, places[:, : loaded.joints]
     jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
     state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
-    found = [coordinate_of_part(loaded.mechanism, stop).value(state) for stop in stops]
+    found = [stop_coordinate(loaded.mechanism, stop).value(state) for stop in stops]
     return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(stops), len(places)).T
 
 

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.equilibria.controllers_at_rest import controls_at_rest
 from centrode.dynamics.equilibria.friction_openings import graph_of_openings
-from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, coordinate_of_part
+from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, stop_coordinate
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
 from centrode.dynamics.forward_dynamics.free_loads import (
@@ -525,7 +525,7 @@ def _stop_pushes(mechanism: Mechanism) -> Iterator[LoadAlong]:
     for stop in mechanism.stops:
         if not stop.is_rigid:
             law = StopPush(stop.least, stop.most, stop.stiffness, stop.damping or 0.0)
-            term = LoadTerm(coordinate_of_part(mechanism, stop), law)  # type: ignore[arg-type]
+            term = LoadTerm(stop_coordinate(mechanism, stop), law)  # type: ignore[arg-type]
             yield LoadAlong(stop.label, term)
 
 

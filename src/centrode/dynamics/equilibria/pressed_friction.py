@@ -137,7 +137,8 @@ def pressed_joints(loaded: LoadedMechanism, places: Array, found: LinearEquation
     arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
     for name, x in evaluate(loaded.graph_of_openings, values).items():
         kind, *at = name.split()
-        arrays[kind][(slice(None), *map(int, at))] = x
+        place: tuple[slice | int, ...] = (slice(None), *map(int, at))
+        arrays[kind][place] = x
     along = arrays["along"]
     of_load = loaded.reactions(found)
     of_frictions = np.stack([loaded.reactions_to(found.rows, along[:, i]) for i in range(k)], axis=2)

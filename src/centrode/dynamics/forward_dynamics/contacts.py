@@ -34,7 +34,7 @@ from centrode.dynamics.loads import Constant, EnergyClass, Friction, LoadDiagram
 from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
-from centrode.model.contacts import MEASURED, MeasuredPart
+from centrode.model.contacts import MEASURED, MeasuredPart, Stop
 from centrode.model.loads import GuideFriction, HingeFriction
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.text_formula import TextFormula, compile_formula
@@ -191,6 +191,11 @@ def coordinate_of_part(mechanism: Mechanism, part: MeasuredPart, where: str) -> 
     return AngularDistance(first, second) if on_sphere else Distance(first, second)
 
 
+def stop_coordinate(mechanism: Mechanism, stop: Stop) -> Coordinate:
+    """What a stop bounds."""
+    return coordinate_of_part(mechanism, stop, f"[[stops]] {stop.label}")
+
+
 def _joint_angle(mechanism: Mechanism, link: str, other: str, where: str) -> Turn | Spin:
     hinge = hinge_of(
         mechanism, link, other, where, _("give relative_to: the link at the other side of its hinge")
@@ -228,7 +233,7 @@ def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tupl
         Contact(
             STOP if stop.is_rigid else COMPLIANT,
             stop.label,
-            coordinate_of_part(mechanism, stop, f"[[stops]] {stop.label}"),
+            stop_coordinate(mechanism, stop),
             stop.least,
             stop.most,
             stop.restitution or 0.0,
