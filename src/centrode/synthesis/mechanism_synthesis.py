@@ -62,6 +62,8 @@ SOFT, SHARP = 30.0, 1e4
 the size of the path: what is left of it falls with the square."""
 ROUGH, NEAR, EXACT = 1e-5, 1e-8, 1e-14
 """Tolerances of least squares: with soft constraints, with sharp ones, and without any or at the end."""
+SHORTEST = 1e-9
+"""Step after which least squares end, in units of the ranges."""
 STEPS = 100
 SHARE = 3
 """Starts that one process refines after the other."""
@@ -365,7 +367,7 @@ def _refine_share(
 def _refine(search: _MechanismSearch, start: Array) -> tuple[float, Array]:
     """The next minimum from a start; where constraints press against it, as sharply as they are checked."""
     if not search.kept.outputs:
-        return _descend(search, start, SOFT)
+        return _descend(search, start, SOFT, NEAR if search.goal.by_samples else EXACT)
     cost, values = _descend(search, start, SOFT, ROUGH)
     return _descend(search, values, SHARP, NEAR) if math.isfinite(cost) else (cost, values)
 
@@ -411,7 +413,8 @@ def _descend(
         return by
 
     bounds = (least_place, greatest_place)
-    ends = {"xtol": tolerance, "ftol": tolerance, "gtol": EXACT}
+    # next to a minimum a step is the square of the one before; next to where a mechanism stops smaller ones say nothing
+    ends = {"xtol": max(tolerance, SHORTEST), "ftol": tolerance, "gtol": EXACT}
     least_squares(rows, inside, slopes, bounds=bounds, max_nfev=STEPS, **ends)
     return least, best
 
