@@ -403,7 +403,7 @@ def _chapter(results: EquilibriumResults) -> Chapter:
     tables: list[Table] = [_table(found)] if found.sizes["equilibrium"] else []
     if found.attrs["vary"]:
         tables.append(_critical_table(found))
-    more = ()
+    more: tuple[Paragraph, ...] = ()
     if "controller_output" in found:
         words = Sentence(
             "States of controllers are further unknowns: at rest their rates vanish, and each adds an eigenvalue."
