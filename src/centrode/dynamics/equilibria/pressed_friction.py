@@ -134,7 +134,7 @@ def pressed_joints(loaded: LoadedMechanism, places: Array, found: LinearEquation
     shapes = {
         "along": (k, c), "force": (k, 2), "mass": (k, 2, c), "rows": (k, 2, e), "own": (k, 2, k),
     }  # fmt: skip
-    arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
+    arrays: dict[str, Any] = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
     for name, x in evaluate(loaded.graph_of_openings, values).items():
         kind, *at = name.split()
         place: tuple[slice | int, ...] = (slice(None), *map(int, at))
