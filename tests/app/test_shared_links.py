@@ -33,8 +33,10 @@ BOMB = 64_000_000
 PATIENCE = 60_000
 """Milliseconds after which a link counts as one that hangs."""
 FOLLOW = """async ([link, patience]) => {
-  const said = document.querySelector("#said"), words = () => said.textContent, picture = () => new Promise(requestAnimationFrame);
-  document.querySelector('.modes [aria-pressed="false"]:not([aria-disabled="true"])').click(); // says what that mode does
+  const said = document.querySelector("#said"), words = () => said.textContent;
+  const picture = () => new Promise(requestAnimationFrame);
+  // says what that mode does
+  document.querySelector('.modes [aria-pressed="false"]:not([aria-disabled="true"])').click();
   await picture();
   const before = words(), end = performance.now() + patience;
   location.hash = link;
@@ -73,7 +75,9 @@ def cut(source: random.Random, text: str) -> str:
 def inserted(source: random.Random, text: str) -> str:
     link = packed(text.encode())
     at = source.randrange(len(link) + 1)
-    strange = source.choice(["=", "%00", "ы", " ", "&m=", "#m=", "<b>", source.choice(LETTERS) * source.randrange(1, 9)])
+    strange = source.choice(
+        ["=", "%00", "ы", " ", "&m=", "#m=", "<b>", source.choice(LETTERS) * source.randrange(1, 9)]
+    )
     return link[:at] + strange + link[at:]
 
 
@@ -93,7 +97,9 @@ def bomb(source: random.Random, text: str) -> str:
 
 def without_sense(source: random.Random, text: str) -> str:
     content = bytes(source.randrange(256) for _k in range(source.randrange(200)))
-    return source.choice([letters_of(content), packed(content), packed(b"\xff\xfe" + text.encode("utf-16-le"))])
+    return source.choice(
+        [letters_of(content), packed(content), packed(b"\xff\xfe" + text.encode("utf-16-le"))]
+    )
 
 
 KINDS: tuple[Callable[[random.Random, str], str], ...] = (
