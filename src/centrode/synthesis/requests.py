@@ -349,7 +349,7 @@ def _check_keys(wanted: Synthesis) -> None:
     if crank not in (None, "OA") and wanted.topology in (*FOUR_BARS, *SPHERICAL):
         what = _("the crank of this topology is {name}").format(name="OA")
         raise Problem(what, _('write crank = "OA", or remove it'), ("constraints", "crank"))
-    if wanted.closed is not None and wanted.timing != "free":
+    if wanted.closed and wanted.timing != "free":
         what = _("where angles of the drive are given, they say how the path is passed")
         raise Problem(what, _("remove closed"), ("closed",))
     pivots = wanted.constraints.pivots
