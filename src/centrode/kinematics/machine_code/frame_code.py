@@ -442,7 +442,7 @@ otherwise:
 
 
 def _write() -> str:
-    """Write the samples; whether all of them close, and the radicands there stay above zero where they are looked at."""
+    """Write the samples; whether all of them close, with radicands above zero where these are looked at."""
     return f"""
 define internal i1 @write_samples(ptr %table) {{
 entry:
