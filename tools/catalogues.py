@@ -86,11 +86,11 @@ def extracted() -> Catalog:
     for file in [*sorted(CODE.rglob("*.py")), CLICK]:
         place = file.relative_to(ROOT).as_posix()
         for _line, message, _comments, _context in extract_from_file("python", file, keywords=KEYWORDS):
-            catalogue.add(message, locations=[(place, None)])
+            catalogue.add(message, locations=[(place, 0)])
     for file in sorted((CODE / "model" / "examples").rglob("*.toml")):
         title = tomllib.loads(file.read_text(encoding="utf-8")).get("title")
         if title:
-            catalogue.add(title, locations=[(file.relative_to(ROOT).as_posix(), None)])
+            catalogue.add(title, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     return catalogue
 
 
