@@ -140,11 +140,11 @@ def train_mechanism(results: GearTrainResults, machine: MechanismSource | None =
     ----------
     results : GearTrainResults
     machine : Mechanism, or the name of its file or of a built-in one
-        In the plane, with one drive, which turns a link about a point of the frame at a constant speed. The pair
-        behind the train turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the crank
-        keeps its sense. Range, instants, loads by the angle of the crank and `[machine]` are converted to the motor:
-        its mean speed and the ratios of its shafts. `[machine]` is omitted where the crank returns only after more
-        than 60 turns of the motor: a cycle has whole turns of the drive.
+        In the plane, with one drive, which turns a link about a point of the frame at a constant speed. The pair behind
+        the train turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the
+        crank keeps its sense. Range, instants, loads by the angle of the crank and `[machine]` are converted to the
+        motor: its mean speed and the ratios of its shafts. `[machine]` is omitted where the crank returns only after
+        more than 60 turns of the motor: a cycle has whole turns of the drive.
 
     Raises
     ------
