@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import doctest
+import functools
 import io
 import os
 import re
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+import traceback
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, nullcontext, redirect_stderr, redirect_stdout
 from itertools import pairwise
@@ -237,14 +239,40 @@ def leave_folder(namespace: dict[str, Any]) -> None:
     shutil.rmtree(namespace["_folder"], ignore_errors=True)
 
 
+def evaluate_or_tell(evaluate: Any, example: Example) -> str | None:
+    """What an evaluator returns, or the text of its failure.
+
+    Sybil cuts the frames of an exception's causes too, and ends the run where one of them has none of its own.
+    """
+    try:
+        said: str | None = evaluate(example)
+    except Exception:
+        return traceback.format_exc()
+    return said
+
+
+def with_texts_of_failures(parser: Any) -> Any:
+    """A parser of blocks whose failures are texts."""
+
+    def parse(document: Document) -> Iterator[Region]:
+        for region in parser(document):
+            region.evaluator = functools.partial(evaluate_or_tell, region.evaluator)
+            yield region
+
+    return parse
+
+
 pytest_collect_file = Sybil(
     parsers=[
-        PythonParser(),
-        CodeBlockParser("console", run_console),
-        CodeBlockParser("toml", read_toml),
-        CodeBlockParser("csv", write_table),
-        CodeBlockParser("diff", write_wrong_file),
-        read_table_rows,
+        with_texts_of_failures(parser)
+        for parser in (
+            PythonParser(),
+            CodeBlockParser("console", run_console),
+            CodeBlockParser("toml", read_toml),
+            CodeBlockParser("csv", write_table),
+            CodeBlockParser("diff", write_wrong_file),
+            read_table_rows,
+        )
     ],
     patterns=["README.md", "docs/*.md", "docs/**/*.md", "docs/*/how-to/*.md"],
     setup=enter_folder,
