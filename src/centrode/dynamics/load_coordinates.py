@@ -243,7 +243,7 @@ class HingeTurn:
         axis = place_of(self.spin._axis(state))
         own, other = (place_of(state.point(name)) for name in (self.own, self.other))
         along = _dot(axis, own) * _dot(axis, other)
-        return state.m.base.atan2(_dot(axis, cross(other, own)), _dot(other, own) - along)  # type: ignore[arg-type]
+        return state.m.base.atan2(_dot(axis, cross(other, own)), _dot(other, own) - along)
 
     def slope(self, state: State) -> Jet:
         return self.spin.slope(state)
@@ -285,10 +285,10 @@ class AngularDistance:
     def pulls(self, state: State) -> tuple[Wrench, ...]:
         one, other = place_of(state.point(self.first)), place_of(state.point(self.second))
         radius = state.mechanism.sphere_radius
-        axis = unit(state.m.base, cross(one, other))  # type: ignore[arg-type]
+        axis = unit(state.m.base, cross(one, other))
         # tangents of the great circle, away from the other point, for a moment of one unit
-        away = tuple(x / radius**2 for x in cross(axis, other))  # type: ignore[arg-type]
-        back = tuple(-x / radius**2 for x in cross(axis, one))  # type: ignore[arg-type]
+        away = tuple(x / radius**2 for x in cross(axis, other))
+        back = tuple(-x / radius**2 for x in cross(axis, one))
         return on_point(self.second, away, other), on_point(self.first, back, one)
 
     def _angle(self, state: State) -> Jet:

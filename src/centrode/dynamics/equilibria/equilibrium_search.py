@@ -236,7 +236,9 @@ def stop_values(loaded: LoadedMechanism, places: Array) -> Array:
     tree = loaded.equations.tree
     jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
     state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
-    found = [coordinate_of_part(loaded.mechanism, stop).value(state) for stop in stops]
+    found = [
+        coordinate_of_part(loaded.mechanism, stop, f"[[stops]] {stop.label}").value(state) for stop in stops
+    ]
     return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(stops), len(places)).T
 
 
