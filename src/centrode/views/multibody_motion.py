@@ -314,7 +314,7 @@ def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     if "friction_at_impacts" in run.attrs:
         yield Fact(
             Sentence("friction at impacts"),
-            Sentence("takes no impulse: what the reactions of an impact would add is left out"),
+            Sentence("takes no impulse: what the reactions of an impact would add is omitted"),
         )
     yield from occasion_facts(run, KINDS, [event_text(run, number) for number in range(len(times))])
 
