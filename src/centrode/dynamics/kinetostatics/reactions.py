@@ -336,7 +336,7 @@ def _greatest_size(parts: Sequence[Number], samples: int) -> Array:
     greatest = np.zeros((1, samples))
     for x in told:
         np.maximum(greatest, np.abs(x), out=greatest)
-    return greatest[0]
+    return np.asarray(greatest[0])
 
 
 def _greater(sizes: Array, others: Array) -> Array:
