@@ -198,3 +198,18 @@ def test_exports_are_those_of_the_command(ask: Callable[..., Any]) -> None:
         events = list(csv.DictReader(archive.read("simulation-events.csv").decode().splitlines()))
     assert len(rows) == 1001
     assert any("impulse" in head and "N m s" in head.replace("*", " ") for head in events[0])
+
+
+def test_events_are_said_once_and_portraits_go_from_left_to_right(ask: Callable[..., Any]) -> None:
+    """The list under the slider has them; facts count them, and a value of rounding is zero."""
+    header, _arrays = played(ask, example_text("door-closer"), "simulate")
+    (motion,) = motion_blocks(header)
+    assert len(motion["marks"]) == 10
+    (facts,) = (block["facts"] for block in header["blocks"] if block["kind"] == "facts")
+    labels = [fact["label"] for fact in facts]
+    assert "impact" not in labels and labels.count("frame") == 1
+    assert not any("·10⁻¹" in fact["text"] for fact in facts if fact["label"].startswith("coordinate"))
+    (portrait,) = (block for block in header["blocks"] if block.get("name") == "simulation-phase-door")
+    low, high = portrait["x"]["ends"]
+    # the door shuts: its angle falls from 80 degrees
+    assert low < 0.0 < START < high and portrait["x"]["values"][0] > portrait["x"]["values"][-1]

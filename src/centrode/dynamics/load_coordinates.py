@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, TypeAlias
@@ -223,6 +224,92 @@ class Spin:
 
 
 @dataclass(frozen=True)
+class HingeTurn:
+    """On the sphere: angle of a link against another in their hinge, between -pi and pi, by a second point of each.
+
+    A joint's own angle is counted over full turns, but not each hinge has one.
+
+    Attributes
+    ----------
+    spin : the turning
+    own, other : points of the link and of the base beside the hinge
+    """
+
+    spin: Spin
+    own: str
+    other: str
+
+    def value(self, state: State) -> Number:
+        axis = place_of(self.spin._axis(state))
+        own, other = (place_of(state.point(name)) for name in (self.own, self.other))
+        along = _dot(axis, own) * _dot(axis, other)
+        return state.m.base.atan2(_dot(axis, cross(other, own)), _dot(other, own) - along)
+
+    def slope(self, state: State) -> Jet:
+        return self.spin.slope(state)
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        return self.spin.pulls(state)
+
+
+@dataclass(frozen=True)
+class GuideArc:
+    """On the sphere: displacement along a guide as an angle about the centre [rad]."""
+
+    guide: str
+
+    def value(self, state: State) -> Number:
+        return Slide(self.guide).value(state) * (1.0 / state.mechanism.sphere_radius)
+
+    def slope(self, state: State) -> Jet:
+        return Slide(self.guide).slope(state) * (1.0 / state.mechanism.sphere_radius)
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        share = 1.0 / state.mechanism.sphere_radius
+        return tuple(wrench.times(share) for wrench in Slide(self.guide).pulls(state))
+
+
+@dataclass(frozen=True)
+class AngularDistance:
+    """On the sphere: angle between two points at the centre [rad], 0 to pi."""
+
+    first: str
+    second: str
+
+    def value(self, state: State) -> Number:
+        return self._angle(state).value
+
+    def slope(self, state: State) -> Jet:
+        return self._angle(state).slope()
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        one, other = place_of(state.point(self.first)), place_of(state.point(self.second))
+        radius = state.mechanism.sphere_radius
+        axis = unit(state.m.base, cross(one, other))
+        # tangents of the great circle, away from the other point, for a moment of one unit
+        away = tuple(x / radius**2 for x in cross(axis, other))
+        back = tuple(-x / radius**2 for x in cross(axis, one))
+        return on_point(self.second, away, other), on_point(self.first, back, one)
+
+    def _angle(self, state: State) -> Jet:
+        # half the angle by difference and sum: without loss from 0 to pi
+        pairs = list(zip(state.point(self.first), state.point(self.second), strict=True))
+        apart, together = ([sign * u + v for u, v in pairs] for sign in (-1.0, 1.0))
+        sizes = [state.m.sqrt(_sum_of_squares(parts)) for parts in (apart, together)]
+        angle: Jet = state.m.atan2(*sizes) * 2.0
+        return angle
+
+
+def _sum_of_squares(parts: Sequence[Jet]) -> Jet:
+    squares = [x * x for x in parts]
+    return sum(squares[1:], squares[0])
+
+
+def _dot(one: Vector, other: Vector) -> Number:
+    return sum((u * v for u, v in zip(one[1:], other[1:], strict=True)), one[0] * other[0])
+
+
+@dataclass(frozen=True)
 class Travel:
     """Way of the drive, whichever its sense: what works along it resists the drive itself."""
 
@@ -237,8 +324,20 @@ class Travel:
         raise NotImplementedError("no force on a link works along it")
 
 
-Coordinate: TypeAlias = Turn | Slide | Distance | HalfSquare | Component | Spin | Travel
-"""What a load works along."""
+Coordinate: TypeAlias = (
+    Turn | Slide | Distance | HalfSquare | Component | Spin | HingeTurn | GuideArc | AngularDistance | Travel
+)
+"""What a load or a contact works along."""
+
+
+def is_angular(coordinate: Coordinate) -> bool:
+    """Whether it is an angle [rad], along which a moment works."""
+    return isinstance(coordinate, Turn | Spin | HingeTurn | GuideArc | AngularDistance)
+
+
+def is_periodic(coordinate: Coordinate) -> bool:
+    """Whether it comes back to the same value after a full turn."""
+    return isinstance(coordinate, HingeTurn)
 
 
 def bodies_of(mechanism: Mechanism, coordinate: Coordinate) -> tuple[Entity, ...]:
@@ -249,10 +348,16 @@ def bodies_of(mechanism: Mechanism, coordinate: Coordinate) -> tuple[Entity, ...
         case Spin(link=link, base=base, axis=axis, joint=joint):
             links = [Entity("link", name) for name in (link, base, joint) if name is not None]
             return (*links, Entity("point", axis)) if isinstance(axis, str) else tuple(links)
-        case Slide(guide=name):
+        case HingeTurn(spin=spin, own=own, other=other):
+            return (*bodies_of(mechanism, spin), Entity("point", own), Entity("point", other))
+        case Slide(guide=name) | GuideArc(guide=name):
             guide = mechanism.guide(name)
             return Entity("point", guide.point), Entity("link", guide.on)
-        case Distance(first=first, second=second) | HalfSquare(first=first, second=second):
+        case (
+            Distance(first=first, second=second)
+            | HalfSquare(first=first, second=second)
+            | AngularDistance(first=first, second=second)
+        ):
             return Entity("point", first), Entity("point", second)
         case Component(at=at, axes=axes):
             body = Entity("point", at) if isinstance(at, str) else Entity("link", at.link)
@@ -269,7 +374,7 @@ def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bo
     if mechanism.space != "sphere":
         return Turn(load.link, load.relative_to)
     axis = hinge_of(mechanism, load.link, load.relative_to, where) if load.axis is None else load.axis
-    joint, sense = _joint(mechanism, load.link, load.relative_to, axis)
+    joint, sense = joint_of_hinge(mechanism, load.link, load.relative_to, axis)
     if measured and joint is None:
         what = _("the angle between {link} and {other} is not measured there, and the load depends on it")
         repair = _("let the first point of one of them be the hinge, and give it a reference on the other")
@@ -277,18 +382,21 @@ def turning_of(mechanism: Mechanism, load: TurningLoad, where: str, measured: bo
     return Spin(load.link, load.relative_to, axis, joint, sense)
 
 
-def hinge_of(mechanism: Mechanism, link: str, other: str, where: str) -> str:
-    """The point that two links share; raises InputError where there is none or more than one."""
+def hinge_of(mechanism: Mechanism, link: str, other: str, where: str, repair: str = "") -> str:
+    """The point that two links share; raises InputError where there is none or more than one.
+
+    `repair` is that of the errors; one that names keys of loads if left out.
+    """
     shared = [point for point in points_of(mechanism, link) if point in points_of(mechanism, other)]
     if len(shared) == 1:
         return shared[0]
     if shared:
         what = _("{link} and {other} share the points {points}")
-        repair = _("choose one: axis = a point")
-        raise InputError(where, what.format(link=link, other=other, points=", ".join(shared)), repair)
+        choose = repair or _("choose one: axis = a point")
+        raise InputError(where, what.format(link=link, other=other, points=", ".join(shared)), choose)
     what = _("{link} and {other} have no hinge in common").format(link=link, other=other)
-    repair = _("give relative_to, or axis: a point, or [x, y, z] in the axes of the frame")
-    raise InputError(where, what, repair)
+    name = repair or _("give relative_to, or axis: a point, or [x, y, z] in the axes of the frame")
+    raise InputError(where, what, name)
 
 
 def points_of(mechanism: Mechanism, link: str) -> list[str]:
@@ -296,7 +404,7 @@ def points_of(mechanism: Mechanism, link: str) -> list[str]:
     return list(mechanism.frame.points if link == FRAME else mechanism.links[link].coordinates)
 
 
-def _joint(
+def joint_of_hinge(
     mechanism: Mechanism, link: str, other: str, axis: str | tuple[float, ...]
 ) -> tuple[str | None, float]:
     """The link whose joint angle is that of one against the other about a point, and which way it counts."""

@@ -46,9 +46,6 @@ def contact_problems(mechanism: Description) -> Iterator[Problem]:
                 if part.until not in known:
                     what = _("there is no event {name}").format(name=value_text(part.until))
                     yield Problem(what, nearest(part.until, known), (*at, "until"))
-            if mechanism.space == "sphere":
-                what = _("stops, clamps and events are computed in the plane")
-                yield Problem(what, _("remove them"), at)
 
 
 def _names(mechanism: Description, part: MeasuredPart, at: Place) -> Iterator[Problem]:

@@ -20,7 +20,7 @@ from centrode.model.reading import (
     read_name,
     value_text,
 )
-from centrode.model.values import Heading, Name, not_negative, positive, read_text, si
+from centrode.model.values import READING, Heading, Name, not_negative, positive, read_text, si
 from centrode.numerics.text_formula import compile_formula
 
 CONDITION_VARIABLES = ("t", "x", "v")
@@ -39,9 +39,10 @@ class MeasuredPart(DescriptionPart):
     ----------
     name : what results call it; left out, its kind and what it acts on
     link, guide, points, point : one of them
-        The angle of the link, the displacement along the guide, the distance of two points, or the way of a point.
+        The angle of the link, the displacement along the guide, the distance of two points, or the way of a point. On
+        the sphere the displacement and the distance are angles about its centre.
     relative_to : the link from which the angle of `link` is counted
-    direction : (x, y), in which the way of `point` is counted from the origin of the frame
+    direction : (x, y), on the sphere (x, y, z), in which the way of `point` is counted from the origin of the frame
     """
 
     name: Name | None = None
@@ -74,16 +75,21 @@ class MeasuredPart(DescriptionPart):
         """What it acts on: a link, a guide, or two points."""
         return self.link or self.guide or self.point or "-".join(self.points or ())
 
-    @property
-    def measures_angle(self) -> bool:
-        """Whether its coordinate is an angle."""
-        return self.link is not None
+    def measures_angle(self, space: str) -> bool:
+        """Whether its coordinate is an angle in a space; on the sphere arcs are angles about the centre."""
+        return self.link is not None or (space == "sphere" and self.point is None)
+
+
+def _is_angular(given: Mapping[str, Any]) -> bool:
+    """The same by keys that are read already."""
+    on_sphere = READING.get().space == "sphere"
+    return given.get("link") is not None or (on_sphere and given.get("point") is None)
 
 
 def _bound(value: object, info: ValidationInfo) -> float | None:
     if value is None:
         return None
-    kind = "angle" if info.data.get("link") is not None else "length"
+    kind = "angle" if _is_angular(info.data) else "length"
     return not_negative(value, kind) if info.data.get("points") is not None else si(value, kind)
 
 
@@ -93,7 +99,7 @@ class Stop(MeasuredPart):
     Attributes
     ----------
     least, most : float [rad or m]
-        One of them or both.
+        One of them or both; on the sphere an angle but for the way of a point.
     restitution : float, 0 to 1
         Of a rigid stop: relative speed after an impact over that before it; 0 by default.
     stiffness, damping : float [N/m or N m/rad], [N s/m or N m s/rad]
@@ -124,7 +130,7 @@ class Stop(MeasuredPart):
     def _compliance(cls, value: object, info: ValidationInfo) -> float | None:
         if value is None:
             return None
-        angular = "angular " if info.data.get("link") is not None else ""
+        angular = "angular " if _is_angular(info.data) else ""
         read = positive if info.field_name == "stiffness" else not_negative
         return read(value, f"{angular}{info.field_name}")
 

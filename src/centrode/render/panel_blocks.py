@@ -56,20 +56,28 @@ DIGITS = 7
 
 
 def panel_blocks(
-    sheet: Sheet, display: Display, mathematics: Mathematics | None = None, *, pictures: bool = True
+    sheet: Sheet,
+    display: Display,
+    mathematics: Mathematics | None = None,
+    *,
+    pictures: bool = True,
+    sentences: Callable[[str], str] = str,
 ) -> list[JSON]:
     """What a page shows of a sheet: its facts, what a terminal prints below them, its pictures and its notes.
 
     Parameters
     ----------
     mathematics : formulas as MathML; without it they are spelled as on a terminal
+    sentences : what the page makes of a translated sentence before its holes are filled
     """
-    writer = _BlockWriter(display, mathematics)
+    writer = _BlockWriter(display, mathematics, sentences)
     blocks: list[JSON] = []
     if sheet.heading != NOTHING:
         blocks.append({"kind": "heading", "text": writer.spelling.text(sheet.heading)})
-    if sheet.facts:
-        blocks.append(writer.facts(sheet.facts))
+    listed = any(player.marks for player in panel_motions(sheet))
+    facts = [fact for fact in sheet.facts if not (listed and fact.is_marked)]
+    if facts:
+        blocks.append(writer.facts(facts))
     for block in sheet.printed:
         blocks += writer.section(block) if isinstance(block, Section) else writer.block(block)
     if sheet.failure is not None:
@@ -102,9 +110,11 @@ def screen_text(text: Text, display: Display) -> str:
 class _BlockWriter:
     """Writes parts of a sheet as blocks."""
 
-    def __init__(self, display: Display, mathematics: Mathematics | None) -> None:
+    def __init__(
+        self, display: Display, mathematics: Mathematics | None, sentences: Callable[[str], str]
+    ) -> None:
         self.display, self.mathematics = display, mathematics
-        self.spelling = ScreenSpelling(display)
+        self.spelling = ScreenSpelling(display, sentences)
         self.formulas: list[tuple[JSON, Formula]] = []
         self.motions = 0
 
@@ -275,6 +285,7 @@ class _BlockWriter:
     def _plot(self, name: str, plot: Plot) -> Iterator[JSON]:
         across, x = self._axis(plot.abscissa.label)
         values = _numbers(plot.abscissa.values * across)
+        ends = None if plot.abscissa.ends is None else [_number(x * across) for x in plot.abscissa.ends]
         title = self.spelling.text(plot.title)
         by_drive = plot.abscissa.label.unit in ("rad", "m", "s")
         for panel in (panel for row in plot.rows for panel in row if panel.curves):
@@ -293,7 +304,7 @@ class _BlockWriter:
                 "kind": "plot",
                 "name": name,
                 "title": title,
-                "x": {**x, "values": values},
+                "x": {**x, "values": values, "ends": ends},
                 "y": y,
                 "curves": curves,
                 "cursor": "drive" if by_drive else None,

@@ -26,10 +26,17 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class Fact:
-    """A label and what is known under it; a fact without a label continues the one above."""
+    """A label and what is known under it; a fact without a label continues the one above.
+
+    Attributes
+    ----------
+    label, value : texts
+    is_marked : whether it is an event that the player of the sheet marks and lists; a page does not say it twice
+    """
 
     label: Text
     value: Text
+    is_marked: bool = False
 
 
 def _is_number(text: Text) -> bool:

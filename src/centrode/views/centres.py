@@ -50,6 +50,7 @@ from centrode.sheets.texts import (
 )
 from centrode.views.columns import instant_columns
 from centrode.views.instants import body_text, instant_place, instant_title, pair_text
+from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,13 +86,7 @@ def place_text(place: np.ndarray, unit: str = "m") -> Text:
     """Coordinates of a place; a dash where there is none."""
     if not np.isfinite(place).all():
         return ABSENT
-    return Place(tuple(_without_rounding(place).tolist()), unit, ".9g")
-
-
-def _without_rounding(place: np.ndarray) -> np.ndarray:
-    """Coordinates, what rounding has left of zero as zero."""
-    size = np.max(np.abs(place), axis=-1, keepdims=True)
-    return np.where(np.abs(place) < 1e-12 * size, 0.0, place)
+    return Place(tuple(without_rounding(place).tolist()), unit, ".9g")
 
 
 # Tables
@@ -460,7 +455,7 @@ def _axes(results: CentreResults, sample: int) -> Table:
     links = results.mechanism.links.items()
     names = [name for name, link in links if len(link.coordinates) > 1 and f"{name},{FRAME}" in given]
     found = results.centres.isel(sample=sample).sel(pair=[f"{name},{FRAME}" for name in names])
-    ends, speeds = _without_rounding(found["centre"].values), np.abs(found["relative_speed"].values)
+    ends, speeds = without_rounding(found["centre"].values), np.abs(found["relative_speed"].values)
     return Table(
         (
             Column("link", tuple(map(Name, names)), head=Sentence("link")),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -53,8 +54,8 @@ def occasion_facts(run: xr.Dataset, labels: Mapping[str, Sentence], places: Sequ
     names = str(run["occasion_kind"].attrs["flag_meanings"]).split()
     kinds = run["occasion_kind"].values.tolist()
     for kind, place in islice(zip(kinds, places, strict=False), SHOWN):
-        yield Fact(labels[names[kind]], place)
-    yield from facts_left_out(len(kinds))
+        yield Fact(labels[names[kind]], place, is_marked=True)
+    yield from (replace(fact, is_marked=True) for fact in facts_left_out(len(kinds)))
 
 
 def facts_left_out(count: int) -> Iterator[Fact]:

@@ -43,6 +43,7 @@ from centrode.views.motion_plots import (
 )
 from centrode.views.motion_tables import tables_chapter
 from centrode.views.reactions import self_locking_samples, self_locking_text
+from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray
@@ -160,7 +161,8 @@ def _extremes(results: MotionResults) -> Iterator[tuple[str, str, float, float]]
     """Name, unit, least and greatest value of each drive among the samples."""
     values = results.motion["drive_value"].values
     for drive, one in zip(results.mechanism.motion_parameter.drives, values.T, strict=True):
-        yield drive.label, drive.unit, float(np.min(one)), float(np.max(one))
+        low, high = without_rounding([np.min(one), np.max(one)]).tolist()
+        yield drive.label, drive.unit, low, high
 
 
 def _events(results: MotionResults, kind: int) -> Text:

@@ -72,6 +72,7 @@ from centrode.views.motion_plots import (
     quantities_panel,
     quantity_label,
 )
+from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -290,7 +291,8 @@ def _range(coordinates: _Coordinates, name: str) -> Text:
     values, unit = coordinates.course(name, 0), coordinates.units[coordinates.names.index(name)]
     if not values.size:
         return NOTHING
-    least, greatest, last = (Number(float(value), unit) for value in (values.min(), values.max(), values[-1]))
+    ends = without_rounding([values.min(), values.max(), values[-1]]).tolist()
+    least, greatest, last = (Number(value, unit) for value in ends)
     return Sentence("{least} to {greatest}, {last} at the end", least=least, greatest=greatest, last=last)
 
 
@@ -309,6 +311,11 @@ def _occasions(run: xr.Dataset) -> Iterator[Fact]:
     """What happened: change points that were passed, impacts, what stuck and slipped."""
     times = run["occasion_time"].values.tolist()
     yield from event_facts(run)
+    if "friction_at_impacts" in run.attrs:
+        yield Fact(
+            Sentence("friction at impacts"),
+            Sentence("takes no impulse: what the reactions of an impact would add is left out"),
+        )
     yield from occasion_facts(run, KINDS, [event_text(run, number) for number in range(len(times))])
 
 

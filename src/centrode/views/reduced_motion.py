@@ -53,6 +53,7 @@ from centrode.views.energy_balance import (
 )
 from centrode.views.motion_events import marked_events
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
+from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -146,7 +147,8 @@ def _facts(results: SimulationResults) -> Iterator[Fact]:
     run = results.simulation
     speed, unit = run["drive_speed"].values, str(run["drive_speed"].attrs["units"])
     least, greatest, last = (
-        Number(float(value), unit, unit_fixed=True) for value in (speed.min(), speed.max(), speed[-1])
+        Number(value, unit, unit_fixed=True)
+        for value in without_rounding([speed.min(), speed.max(), speed[-1]]).tolist()
     )
     turns = results.mechanism.drives[0].kind == "angle"
     yield Fact(Sentence("drives"), Joined(tuple(Name(str(name)) for name in run["drive"].values)))

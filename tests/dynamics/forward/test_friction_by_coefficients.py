@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -253,7 +253,7 @@ def test_a_block_on_a_belt_sticks_and_slips_as_the_force_that_presses_it_varies(
     assert abs(float(run.drive_value[-1, 0]) - place) < 1e-9
 
 
-def crank_slider(*loads: dict[str, object], **drive: object) -> ct.Mechanism:
+def crank_slider(*loads: dict[str, object], stops: Sequence[object] = (), **drive: object) -> ct.Mechanism:
     return ct.Mechanism(
         gravity=[0, -G],
         frame={"points": {"O": [0, 0]}},
@@ -265,6 +265,7 @@ def crank_slider(*loads: dict[str, object], **drive: object) -> ct.Mechanism:
         guides=[{"point": "B", "on": "frame", "through": "O", "direction": [1, 0], "link": "piston"}],
         drives=[{"link": "OA", "start": "60 deg", **drive}],
         loads=[{"kind": "force", "point": "B", "vector": [-50, -20]}, *loads],
+        stops=stops,
         assembly={"sides": {"B": "ahead"}},
     )
 
@@ -355,6 +356,23 @@ RUBBING = [
     {"kind": "friction", "point": "B", "coefficient": 0.1, "radius": "12 mm"},
     {"kind": "friction", "guide": "B", "coefficient": 0.15, "length": "60 mm", "height": "40 mm"},
 ]
+
+
+@pytest.mark.parametrize("coefficient", [None, 0.2])
+def test_an_impact_loses_what_its_restitution_takes_and_the_result_says_so_of_friction(coefficient):
+    """The slider of the mechanism meets a stop: friction takes no impulse, whatever presses its guide then."""
+    restitution, frictions = 0.5, [{"kind": "friction", "guide": "B", "coefficient": coefficient}]
+    rubs = frictions if coefficient else []
+    run = simulated(
+        crank_slider(*rubs, stops=[{"guide": "B", "least": 0.25, "restitution": restitution}]), 0.3
+    )
+    assert ("friction_at_impacts" in run.attrs) is (coefficient is not None)
+    # J (1 + e) u / 2 with the speeds away from the stop: the impulse gives the speed before
+    impulse, lost = float(run.occasion_impulse[0]), float(run.occasion_loss[0])
+    time = float(run.occasion_time[0])
+    speed = abs(float(simulated(crank_slider(*rubs), 0.3, at=[time]).slide_velocity[0, 0]))
+    assert lost == pytest.approx(0.5 * impulse * speed * (1.0 - restitution), rel=1e-8)
+    assert run.attrs["worst_energy_residual"] < 1e-8
 
 
 @pytest.mark.parametrize("which", [(0,), (1,), (2,), (3,), (0, 1, 2, 3)])

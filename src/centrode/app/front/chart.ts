@@ -22,7 +22,7 @@ function looksOf(lines: ChartLine[]): string[] {
 export interface ChartData {
   title: string;
   unit: string;
-  x: { values: ArrayLike<number>; label: string; unit: string };
+  x: { values: ArrayLike<number>; label: string; unit: string; ends?: [number, number] | null }; // ends: left and right of a phase portrait
   lines: ChartLine[];
   bands?: { from: number; to: number }[]; // samples that are not reached
   marks?: { at: number; kind: string }[]; // samples of limits and change points
@@ -133,6 +133,7 @@ export class Chart {
     this.rising = first <= last;
     this.turnsBack = all.some((value, k) => k > 0 && (this.rising ? value < all[k - 1]! : value > all[k - 1]!));
     const least = all.reduce((a, b) => Math.min(a, b), first), most = all.reduce((a, b) => Math.max(a, b), last), slack = 1e-9 * (most - least);
+    if (this.data!.x.ends) return this.data!.x.ends;
     // what goes to and fro, as a drive over its turns
     if (least < Math.min(first, last) - slack || most > Math.max(first, last) + slack) return [least, most];
     return [first, last]; // a drive that turns back has its way from left to right all the same
@@ -142,7 +143,7 @@ export class Chart {
     const { data, svg, wide } = this;
     if (!data) return;
     svg.replaceChildren();
-    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), long = 7 * symbol.length > 0.3 * wide;
+    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), long = 7 * symbol.length > 0.12 * wide;
     // a long name of the abscissa stands below its numbers
     const TALL = TALLEST + (long ? 15 : 0), LOWER = LOWEST + (long ? 15 : 0), named = long ? 0 : 8 * symbol.length + 22;
     svg.setAttribute("viewBox", `0 0 ${wide} ${TALL}`);

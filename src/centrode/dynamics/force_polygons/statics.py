@@ -19,7 +19,18 @@ from typing import Any, Literal, TypeAlias, assert_never
 import numpy as np
 
 from centrode.analysis.graphic.stage import VectorDrawing, cross
-from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Spin, Travel, Turn
+from centrode.dynamics.load_coordinates import (
+    AngularDistance,
+    Component,
+    Distance,
+    GuideArc,
+    HalfSquare,
+    HingeTurn,
+    Slide,
+    Spin,
+    Travel,
+    Turn,
+)
 from centrode.dynamics.loads import AppliedLoad, LoadTerm, MassesAndLoads
 from centrode.dynamics.state import Centre, Mass, Radial, State
 from centrode.errors import MotionError, NotComputedYet
@@ -451,7 +462,7 @@ class ActionReader:
                 force = strength * (apart if isinstance(along, HalfSquare) else apart / abs(apart))
                 yield self.bodies.host(second), force, ends[1], 0.0
                 yield self.bodies.host(first), -force, ends[0], 0.0
-            case Spin() | Travel():
+            case Spin() | HingeTurn() | GuideArc() | AngularDistance() | Travel():
                 along.pulls(self.state)  # says why it acts on no body
             case _:
                 assert_never(along)

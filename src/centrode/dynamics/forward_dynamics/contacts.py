@@ -12,14 +12,29 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
 from centrode.dynamics.forward_dynamics.joint_openings import JointOpening
-from centrode.dynamics.load_coordinates import Component, Coordinate, Distance, Slide, Turn
-from centrode.dynamics.loads import Constant, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
+from centrode.dynamics.load_coordinates import (
+    AngularDistance,
+    Component,
+    Coordinate,
+    Distance,
+    GuideArc,
+    HingeTurn,
+    Slide,
+    Spin,
+    Turn,
+    hinge_of,
+    joint_of_hinge,
+    points_of,
+)
+from centrode.dynamics.loads import Constant, EnergyClass, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
 from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
-from centrode.model.contacts import MEASURED, MeasuredPart
+from centrode.model.contacts import MEASURED, MeasuredPart, Stop
 from centrode.model.loads import GuideFriction, HingeFriction
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.text_formula import TextFormula, compile_formula
@@ -158,16 +173,58 @@ class ContactMode:
 FREE = ContactMode(0.0, 0.0, 0.0)
 
 
-def coordinate_of_part(mechanism: Mechanism, part: MeasuredPart) -> Coordinate:
-    """What a stop, a clamp or an event measures."""
+def coordinate_of_part(mechanism: Mechanism, part: MeasuredPart, where: str) -> Coordinate:
+    """What a stop, a clamp or an event measures.
+
+    Raises InputError on the sphere where two links have no hinge in common whose angle is measured.
+    """
+    on_sphere = mechanism.space == "sphere"
     if part.link is not None:
+        if on_sphere:
+            return _joint_angle(mechanism, part.link, part.relative_to, where)
         return Turn(part.link, part.relative_to)
     if part.guide is not None:
-        return Slide(part.guide)
+        return GuideArc(part.guide) if on_sphere else Slide(part.guide)
     if part.point is not None:
         return Component(part.point, part.direction or (1.0, 0.0))
     first, second = part.points or ("", "")
-    return Distance(first, second)
+    return AngularDistance(first, second) if on_sphere else Distance(first, second)
+
+
+def stop_coordinate(mechanism: Mechanism, stop: Stop) -> Coordinate:
+    """What a stop bounds."""
+    return coordinate_of_part(mechanism, stop, f"[[stops]] {stop.label}")
+
+
+def _joint_angle(mechanism: Mechanism, link: str, other: str, where: str) -> Turn | Spin:
+    hinge = hinge_of(
+        mechanism, link, other, where, _("give relative_to: the link at the other side of its hinge")
+    )
+    joint, sense = joint_of_hinge(mechanism, link, other, hinge)
+    if joint is None:
+        what = _("the angle between {link} and {other} is not measured there")
+        repair = _("let the first point of one of them be the hinge, and give it a reference on the other")
+        raise InputError(where, what.format(link=link, other=other), repair)
+    return Turn(joint) if sense > 0.0 else Spin(link, other, hinge, joint, sense)
+
+
+def rubbing_coordinate(mechanism: Mechanism, coordinate: Coordinate) -> Coordinate:
+    """What the friction of a load works along: on the sphere the turning in a hinge has a value, to hold what sticks.
+
+    A turning about an axis that is no hinge has none.
+    """
+    if not isinstance(coordinate, Spin) or coordinate.joint is not None:
+        return coordinate
+    axis = coordinate.axis
+    beside = [
+        [name for name in points_of(mechanism, body) if name != axis]
+        for body in (coordinate.link, coordinate.base)
+        if axis in points_of(mechanism, body)
+    ]
+    if len(beside) < 2 or not all(beside):
+        return coordinate
+    own, other = (names[0] for names in beside)
+    return HingeTurn(coordinate, own, other)
 
 
 def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tuple[Contact, ...]:
@@ -176,7 +233,7 @@ def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tupl
         Contact(
             STOP if stop.is_rigid else COMPLIANT,
             stop.label,
-            coordinate_of_part(mechanism, stop),
+            stop_coordinate(mechanism, stop),
             stop.least,
             stop.most,
             stop.restitution or 0.0,
@@ -186,7 +243,12 @@ def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tupl
         for stop in mechanism.stops
     ]
     found += [
-        Contact(CLAMP, clamp.label, coordinate_of_part(mechanism, clamp), until=clamp.until)
+        Contact(
+            CLAMP,
+            clamp.label,
+            coordinate_of_part(mechanism, clamp, f"[[clamps]] {clamp.label}"),
+            until=clamp.until,
+        )
         for clamp in mechanism.clamps
     ]
     return (*found, *frictions)
@@ -196,9 +258,10 @@ def conditions_of(mechanism: Mechanism) -> tuple[Condition, ...]:
     """The user's events of a description."""
     found = []
     for event in mechanism.events:
-        formula = compile_formula(event.when, ("t", "x", "v"), f"[[events]] {event.label}")
+        where = f"[[events]] {event.label}"
+        formula = compile_formula(event.when, ("t", "x", "v"), where)
         measured = any(getattr(event, key) is not None for key in MEASURED)
-        coordinate = coordinate_of_part(mechanism, event) if measured else None
+        coordinate = coordinate_of_part(mechanism, event, where) if measured else None
         found.append(Condition(event.label, coordinate, formula, event.do == "end"))
     return tuple(found)
 
@@ -268,6 +331,42 @@ class SmoothFriction:
     def __call__(self, now: Any) -> Number:
         slip = now.v if isinstance(self.drift, float) and self.drift == 0.0 else now.v - self.drift
         return -self.viscous * slip - self.quadratic * slip * now.m.abs(slip)
+
+
+@dataclass(frozen=True)
+class StopPush:
+    """What a compliant stop exerts along its coordinate, whether it is closed or not: it pushes and never pulls."""
+
+    least: Number | None
+    most: Number | None
+    stiffness: Number
+    damping: Number
+    uses: frozenset[str] = frozenset("xv")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    depends_on_sense: bool = False
+    energy_class = EnergyClass.STORED
+    by_place = False
+
+    def energy(self, x: Number) -> Number:
+        """Potential energy of its spring [J] at a value of its coordinate."""
+        found: Number = 0.0
+        if self.most is not None:
+            found = found + 0.5 * self.stiffness * np.maximum(x - self.most, 0.0) ** 2
+        if self.least is not None:
+            found = found + 0.5 * self.stiffness * np.maximum(self.least - x, 0.0) ** 2
+        return found
+
+    def __call__(self, now: Any) -> Number:
+        found: Number = 0.0
+        for bound, side in ((self.most, 1.0), (self.least, -1.0)):
+            if bound is None:
+                continue
+            beyond = side * (now.x - bound)
+            push = now.m.max(self.stiffness * beyond + self.damping * (side * now.v), 0.0)
+            # what is open does not damp
+            found = found - side * now.m.where(now.m.less(0.0, beyond), push, 0.0)
+        return found
 
 
 def row_numbers(contacts: Sequence[Contact]) -> tuple[int, ...]:

@@ -61,7 +61,7 @@ from centrode.dynamics.forward_dynamics.spanning_tree import (
     rotor_jets,
 )
 from centrode.dynamics.kinetostatics.equations import Teeth
-from centrode.dynamics.load_coordinates import Coordinate, bodies_of
+from centrode.dynamics.load_coordinates import Coordinate, Spin, bodies_of, is_periodic
 from centrode.dynamics.loads import LoadTerm, Situation
 from centrode.dynamics.masses import coordinates_of
 from centrode.dynamics.state import Mass, State
@@ -312,7 +312,7 @@ class EquationsOfMotion:
         measures: list[ContactMeasure] = []
         for contact, mode in zip(self.contacts, modes or (), strict=False):
             slope = contact.coordinate.slope(state)
-            own = self._measure(m, contact, mode, state, contact.coordinate.value(state), slope.value)
+            own = self._measure(m, contact, mode, state, _value_of(contact, state), slope.value)
             measures.append(own)
             row: Vector = {}
             for k in self._reach(contact.coordinate):
@@ -321,7 +321,7 @@ class EquationsOfMotion:
                 add_term(force, k, times(x, own.strength))
             if contact.has_row:
                 rows.append(row)
-                gaps.append(own.value - mode.held - times(contact.drift, time))
+                gaps.append(_gap(m, contact, own.value - mode.held - times(contact.drift, time)))
                 drifts.append(own.speed - contact.drift)
                 bias.append(slope.derivative(1))
         acting = [(load.term.coordinate, x) for load, x in zip(self.loads, strengths, strict=True)]
@@ -757,6 +757,20 @@ class EquationsOfMotion:
             list(rates), {k: _rotor_of_jet(jets, values.rotors[k], rates[k]) for k in self.tree.angles}
         )
         return self._state(jets, self.tree.positions(jets, self.numbers, moving, laws), time, 2)
+
+
+def _value_of(contact: Contact, state: JointState) -> Number:
+    """The coordinate of a contact; zero of a turning that has no value, of which the speed alone is held."""
+    if isinstance(contact.coordinate, Spin) and contact.coordinate.joint is None:
+        return 0.0
+    return contact.coordinate.value(state)
+
+
+def _gap(m: Namespace, contact: Contact, apart: Number) -> Number:
+    """By how much a contact is off the value that is held."""
+    if is_periodic(contact.coordinate):
+        return m.atan2(m.sin(apart), m.cos(apart))
+    return apart
 
 
 def _plus(x: Number, change: Number) -> Number:

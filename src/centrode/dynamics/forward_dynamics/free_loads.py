@@ -11,6 +11,7 @@ from centrode.dynamics.forward_dynamics.contacts import (
     Contact,
     SmoothFriction,
     friction_contact,
+    rubbing_coordinate,
     sensed_contact,
 )
 from centrode.dynamics.forward_dynamics.equations_of_motion import DriveShaft, LoadAlong
@@ -119,7 +120,8 @@ def dry_frictions_of(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tupl
             if is_dry(term):
                 assert isinstance(term.amount, Friction)
                 assert isinstance(described, HingeFriction | GuideFriction)
-                found.append(friction_contact(described, load.label, term.amount, term.coordinate))
+                along = rubbing_coordinate(mechanism, term.coordinate)
+                found.append(friction_contact(described, load.label, term.amount, along))
             elif has_sense(term):
                 found.append(sensed_contact(term, load.label, load.where))
     return tuple(found)

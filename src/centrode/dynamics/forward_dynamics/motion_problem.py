@@ -36,8 +36,9 @@ from centrode.dynamics.forward_dynamics.reaction_friction import (
     uniqueness,
 )
 from centrode.dynamics.forward_dynamics.spanning_tree import JointValues, Rotor
-from centrode.dynamics.load_coordinates import Turn
+from centrode.dynamics.load_coordinates import is_angular
 from centrode.dynamics.loads import EnergyClass
+from centrode.dynamics.state import length_unit
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.initial_value_problems import (
     BEFORE,
@@ -396,8 +397,7 @@ def _guard_of_contact(
     m = EXPRESSIONS
     contact, mode = equations.contacts[guard.number], terms.modes[guard.number]
     one = moved.measures[guard.number]
-    angular = isinstance(contact.coordinate, Turn)
-    unit: Number = 1.0 if angular else variable(LENGTH)
+    unit = 1.0 if is_angular(contact.coordinate) else _length_unit(equations)
     force: Number = 0.0
     weak: Number = 0.0
     row = {number: row for row, number in equations.contact_rows}.get(guard.number)
@@ -428,6 +428,12 @@ def _guard_of_contact(
         value = m.where(here, guard.bound * force, m.where(there, unit, gap))
         return value, m.where(here, weak, LEAST_GAP * unit)
     return m.where(here, -gap, m.where(there, unit, gap)), LEAST_GAP * unit
+
+
+def _length_unit(equations: EquationsOfMotion) -> Number:
+    """The greatest length [m]; on the sphere lengths are arcs, and the radius makes metres of them."""
+    unit = length_unit(equations.tree.mechanism)
+    return variable(LENGTH) if unit == 1.0 else variable(LENGTH) * unit
 
 
 def _watch(equations: EquationsOfMotion, independence: Number, speeds: Sequence[Number]) -> dict[str, Number]:

@@ -21,15 +21,15 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.forward_dynamics.contact_forces import ContactForces
+from centrode.dynamics.forward_dynamics.contact_states import ContactStates
 from centrode.dynamics.forward_dynamics.contacts import CLAMP, FRICTION, STOP
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
-from centrode.dynamics.forward_dynamics.event_steps import ContactForces, EventWatch
 from centrode.dynamics.forward_dynamics.initial_position import units_of
 from centrode.dynamics.forward_dynamics.integration import MotionIntegration
 from centrode.dynamics.forward_dynamics.motion_steps import RESTS, ImpactRecord, Transition
 from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
-from centrode.numerics.integrators import Integrator
 from centrode.numerics.python_functions import Function
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -129,14 +129,12 @@ class EventDerivatives:
     Attributes
     ----------
     integration : of the motion
-    take : an integrator of it
     parameters : (parameters) of its steps
     rate : what speeds are compared with [1/s]
     rates : (time, parameters, carried) -> rates of what is followed
     """
 
     integration: MotionIntegration
-    take: Integrator
     parameters: Array
     rate: float
     rates: Function
@@ -159,8 +157,8 @@ class EventDerivatives:
         return [self._places[name] for name in self.integration.names.active]
 
     @cached_property
-    def _watch(self) -> EventWatch:
-        return EventWatch(self.integration, self.take, self.parameters[:, None], self.rate)
+    def _states(self) -> ContactStates:
+        return ContactStates(self.integration, self.parameters[:, None], self.rate)
 
     @cached_property
     def numbers(self) -> ContactNumbers:
@@ -243,11 +241,11 @@ class EventDerivatives:
 
     def _guard_sizes(self, guards: Sequence[int]) -> Array:
         """What gaps are compared with; of all other guards nothing is known, so nothing is taken for small."""
-        watch = self._watch
+        states = self._states
         found = []
         for number in guards:
-            guard = watch.guards[number]
-            found.append(float(watch.units[guard.number]) if guard.kind == STOP else 0.0)
+            guard = states.guards[number]
+            found.append(float(states.units[guard.number]) if guard.kind == STOP else 0.0)
         return np.array(found)
 
     def _change_of_release(self, transition: Transition, direction: Direction) -> float:
@@ -309,11 +307,11 @@ class EventDerivatives:
         )
         numbers = self.numbers.at_step(direction.contacts, step)
         parameters = self.parameters + step * direction.parameters
-        watch = EventWatch(self.integration, self.take, parameters[:, None], self.rate)
-        felt = watch.felt_at(row)
+        states = ContactStates(self.integration, parameters[:, None], self.rate)
+        felt = states.forces_in(row)
         rests = np.zeros(0)
         if transition.impact is not None:
-            rests = self._apply_impact(watch, row, felt, transition.impact, numbers.restitution)
+            rests = self._apply_impact(states, row, felt, transition.impact, numbers.restitution)
         self._take_modes(row, transition, felt, numbers)
         closed = np.array(self.integration.closing_function([row[0], 1.0, *parameters, *row[1:]]))
         return np.concatenate([closed[: self._count], row[1:][self._held], rests])
@@ -336,7 +334,7 @@ class EventDerivatives:
         row[1:][self._held] = held
 
     def _apply_impact(
-        self, watch: EventWatch, row: Array, felt: ContactForces, impact: ImpactRecord, restitution: Array
+        self, states: ContactStates, row: Array, felt: ContactForces, impact: ImpactRecord, restitution: Array
     ) -> Array:
         """Change the speeds of a row by impulses of the same contacts; how long last small impacts take [s]."""
         rows = {k: place for place, k in enumerate(self._with_rows)}
@@ -356,11 +354,11 @@ class EventDerivatives:
         row[1 + part.start : 1 + part.stop] = start + felt.shifts[:, at] @ (impact.signs * impulses)
         if impact.resting:
             resting = list(impact.resting)
-            behind = watch.felt_at(row)
+            behind = states.forces_in(row)
             for place, whole in zip(resting, impact.settled, strict=True):
                 k = impact.numbers[place]
                 share = float(restitution[k])
-                free = impact.signs[place] * watch.acceleration_at(row, behind, k)
+                free = impact.signs[place] * states.acceleration_at(row, behind, k)
                 rests.append(-2.0 * float(after[place]) / free / (1.0 - share) if whole > 0.0 else 0.0)
             more = np.linalg.lstsq(matrix[np.ix_(resting, resting)], -after[resting], rcond=1e-11)[0]
             impulses[resting] += more

@@ -19,9 +19,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.forward_dynamics.explicit_steps import ATTEMPTS, MOST_STEPS
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion
 from centrode.dynamics.forward_dynamics.initial_state import InitialState
-from centrode.dynamics.forward_dynamics.integration import ATTEMPTS, MOST_STEPS
 from centrode.dynamics.forward_dynamics.motion_problem import CONTROLS, GUARD, LENGTH, PASSED, RATE, TOLERANCE
 from centrode.dynamics.forward_dynamics.motion_steps import Event, MotionSteps, Transition
 from centrode.dynamics.sensitivities.event_derivatives import (
@@ -259,7 +259,7 @@ class _VariedCourse:
         if equations.free.equations.has_events:
             self.steps = integration.explicit_steps(start, duration, tolerance, executor)
         self.through = EventDerivatives(
-            integration, self.take, self.own, self.rate, PythonIntegration(integration.problem).rates
+            integration, self.own, self.rate, PythonIntegration(integration.problem).rates
         )
 
     @cached_property

@@ -16,9 +16,9 @@ import xarray as xr
 from centrode.dynamics.forward_dynamics.contacts import FRICTION
 from centrode.dynamics.forward_dynamics.free_loads import DriveEffort
 from centrode.dynamics.forward_dynamics.free_motion import FreeMotion, free_motion_of
-from centrode.dynamics.forward_dynamics.motion_steps import KINDS
+from centrode.dynamics.forward_dynamics.motion_steps import IMPACT, KINDS
 from centrode.dynamics.forward_dynamics.trajectory import STATUSES, Trajectory
-from centrode.dynamics.load_coordinates import Turn
+from centrode.dynamics.load_coordinates import is_angular
 from centrode.dynamics.loads import EnergyClass
 from centrode.dynamics.simulation.driving_law import Driving
 from centrode.dynamics.simulation.routes import MULTIBODY
@@ -369,7 +369,7 @@ def _links_and_points(setting: MultibodySetting, course: Trajectory) -> dict[str
             ("slide", "slide_velocity", "slide_acceleration"),
             ("guide",),
             (course.slides, course.slide_speeds, course.slide_accelerations),
-            1.0,
+            unit,
         ),
     ]
     turning = (course.angles, course.angular_velocities, course.angular_accelerations)
@@ -452,7 +452,7 @@ def _contacts(setting: MultibodySetting, course: Trajectory) -> dict[str, Variab
     if not contacts:
         return {}
     force = vocabulary_variable("restraint_force", ("sample", "contact"), course.contact_forces)
-    angular = [isinstance(contact.coordinate, Turn) for contact in contacts]
+    angular = [is_angular(contact.coordinate) for contact in contacts]
     force[2]["units"] = _joined_units(["N m" if turns else "N" for turns in angular])
     modes = course.contact_modes.astype(np.int8)
     return {
@@ -496,6 +496,12 @@ def _impacts(course: Trajectory) -> dict[str, Variable]:
     return found
 
 
+def _rubs_at_impacts(setting: MultibodySetting, course: Trajectory) -> bool:
+    """Whether there are impacts, and friction by coefficients, whose share in their impulses is left out."""
+    presses = any(contact.pressing is not None for contact in setting.free.equations.contacts)
+    return presses and any(event.kind == IMPACT for event in course.events)
+
+
 def _attributes(
     setting: MultibodySetting, course: Trajectory, variables: Mapping[str, Variable]
 ) -> dict[str, Any]:
@@ -517,6 +523,7 @@ def _attributes(
         "steps": course.steps,
         "driving": settings.law,
         "conditions": "\n".join(one.label for one in setting.free.equations.conditions),
+        **({"friction_at_impacts": "no impulse"} if _rubs_at_impacts(setting, course) else {}),
         "work_sorts": " ".join(work_sorts(setting.free)[name] for name in course.works),
         "worst_residual": float(np.max(variables["residual"][1], initial=0.0)),
         "worst_energy_residual": float(np.nanmax(np.abs(course.energy_residual), initial=0.0)),
