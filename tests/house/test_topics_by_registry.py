@@ -53,8 +53,6 @@ ALLOWED = {
     },
     # the chapter of a repaired mechanism consists of those of other topics, and begins with what was changed
     "report/repaired_mechanism.py": {"centrode.views.single_changes"},
-    # conclusions on a cam follow from the results of several topics
-    "report/cam_conclusions.py": {"centrode.views.cam_conclusions"},
     # every document opens with the scheme of its mechanism
     "report/opening_pictures.py": {"centrode.views.schemes"},
     # a layer of a drawing at full size, not the topic
