@@ -14,6 +14,9 @@ WITHOUT_EXTRAS := tests/sweeps/test_without_extras.py tests/sweeps/test_sweeps.p
 
 # Matrices are small, and workers run on every core: threads of the linear algebra would only wait for each other.
 quick tests tests-without-extras samples campaigns snapshots: export OPENBLAS_NUM_THREADS := 1
+# Workers, and the hundreds of processes that tests start, read what one of them has compiled, also where the
+# environment forbids to keep it.
+quick tests tests-without-extras samples: export PYTHONDONTWRITEBYTECODE :=
 
 # A stamp is newer than pyproject.toml when what it stands for is installed.
 BASE := $(VENV)/.stamp-base
@@ -21,8 +24,8 @@ FOR_DEMO := $(VENV)/.stamp-demo
 FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test quick format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues \
-	reference campaigns samples benchmarks snapshots house clean
+.PHONY: help demo test checks quick format lint types contracts catalogue-check reference-check docs tests \
+	tests-without-extras catalogues reference campaigns samples benchmarks snapshots house clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -30,7 +33,12 @@ help: ## this list
 demo: $(FOR_DEMO) ## compute a built-in mechanism into demo-output/
 	$(BIN)/centrode run $(DEMO) --out demo-output
 
-test: lint types contracts catalogue-check reference-check docs tests tests-without-extras ## everything that CI checks
+# A check is one process, so two run at a time; tests have a process for every processor.
+test: $(FOR_TESTS) ## everything that CI checks
+	$(MAKE) --jobs 2 checks
+	$(MAKE) tests tests-without-extras
+
+checks: lint types contracts catalogue-check reference-check docs ## what is checked without tests
 
 # tests/quick.txt names one case of each topic, command, renderer and kind of refusal, the cheapest that reaches most.
 # They are named, not marked: to find marked tests, each worker would import every file of tests first.
@@ -56,8 +64,10 @@ reference-check: $(FOR_TESTS) ## pages made from the program are as it is
 docs: $(FOR_TESTS) ## the documentation as a site in docs/_build/html, with warnings as errors
 	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --builder html docs docs/_build/html
 
+# The blocks of one document share their names. Files keep their order: long ones, of browsers, come early and short pages
+# last, so that no worker waits for another one; by their number of tests, long files of few tests would come last.
 tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
-	$(BIN)/pytest -q -n auto --dist loadfile  # the blocks of one document share their names
+	$(BIN)/pytest -q -n auto --dist loadfile --no-loadscope-reorder
 
 tests-without-extras: $(FOR_TESTS) ## what machine code and stores are for, as if llvmlite and zarr were not installed
 	PYTHONPATH="$(CURDIR)/tests/absent" CENTRODE_WITHOUT="llvmlite zarr" \

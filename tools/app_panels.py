@@ -20,7 +20,7 @@ import shutil
 import sys
 import time
 import zlib
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from PIL import Image, ImageDraw
+from playwright.sync_api import TimeoutError as LateError
 from playwright.sync_api import sync_playwright
 
 from centrode.model.examples import example_text
@@ -118,8 +119,9 @@ FITS = """(where) => {
   if (!panel.textContent.trim()) said.push("empty");
   return said;
 }"""
-AUDIT = """async (where) => {
-  const found = await axe.run({include: [where], exclude: [[".paper svg > *"]]}, {resultTypes: ["violations"]});
+AUDIT = """async ([where, rules]) => {
+  const how = {resultTypes: ["violations"], ...(rules.length ? {runOnly: rules} : {})};
+  const found = await axe.run({include: [where], exclude: [[".paper svg > *"]]}, how);
   return found.violations.filter((one) => ["serious", "critical"].includes(one.impact))
     .map((one) => `${one.id}: ${one.nodes.slice(0, 2).map((node) => node.html.slice(0, 120)).join(" | ")}`);
 }"""
@@ -138,8 +140,8 @@ class Findings:
 
     wrong: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
     foreign: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    audits: int = 0
-    panels: int = 0
+    audited: Counter[str] = field(default_factory=Counter)
+    captured: Counter[str] = field(default_factory=Counter)
     pictures: dict[tuple[str, int], dict[tuple[str, str], Path]] = field(
         default_factory=lambda: defaultdict(dict)
     )
@@ -213,17 +215,21 @@ def look(
         turn = LANGUAGES.index(language) + WIDTHS.index(wide)
         if arguments.square and SCHEMES.index(scheme) != turn % 2:
             continue  # each language at each width, by day or at night
+        combination = f"{language} {wide} {scheme}"
         said = [*dict.fromkeys(window.evaluate(FITS, where))]
         if arguments.audit:
-            found.audits += 1
-            said += window.evaluate(AUDIT, where)
+            found.audited[combination] += 1
+            # at night nothing else has changed
+            rules = ["color-contrast"] if scheme == SCHEMES[1] and not arguments.square else []
+            said += window.evaluate(AUDIT, [where, rules])
         for one in said:
-            found.wrong[name, one].append(f"{language} {wide} {scheme}")
-            print(f"{name}: {one} [{language} {wide} {scheme}]", flush=True)
+            found.wrong[name, one].append(combination)
+            print(f"{name}: {one} [{combination}]", flush=True)
         if arguments.blind:
             continue
         file = folder / "views" / f"{name}-{wide}-{language}-{scheme}.png"
         picture(window, ".card.panel" if where == "#panel" else where).save(file)
+        found.captured[combination] += 1
         found.pictures[name, wide][language, scheme] = file
         if name.partition("-")[0] in PLAYED:
             around = folder / "views" / f"{name}-window-{wide}-{language}-{scheme}.png"
@@ -243,7 +249,6 @@ def look_at_both(
     where: str = "#panel",
 ) -> None:
     """A panel, or a page, by day and at night at all widths."""
-    found.panels += 1
     for scheme in SCHEMES:
         window.emulate_media(color_scheme=scheme)
         settle(window)
@@ -289,9 +294,10 @@ def search(window: Any, kind: str) -> None:
 
 def walk(running: Any, address: str, found: Findings, arguments: argparse.Namespace) -> None:
     """Every panel and page in every language, by day and at night, window by window."""
+    only_pages = arguments.topics and not set(arguments.topics) - set(PAGES)
     for language in arguments.languages:
         seen: set[str] = set()
-        for name in arguments.descriptions:
+        for name in () if only_pages else arguments.descriptions:
             link = f"{address}#m={packed(description(name))}"
             with open_window(running, link, language, found, arguments) as window:
                 until(window, "document.querySelectorAll('[role=tab]:not(.away)').length > 2")
@@ -310,9 +316,14 @@ def walk(running: Any, address: str, found: Findings, arguments: argparse.Namesp
             page, _hyphen, kind = name.partition("-")
             where = address.replace("/?", f"/{page}?")
             with open_window(running, where, language, found, arguments) as window:
-                if page == "synthesis":
-                    search(window, kind or "path")
-                window.wait_for_selector(there)
+                try:
+                    if page == "synthesis":
+                        search(window, kind or "path")
+                    window.wait_for_selector(there)
+                except LateError:
+                    found.wrong[name, "no answer in time"].append(language)
+                    print(f"{name}: no answer in time [{language}]", flush=True)
+                    continue
                 settle(window)
                 look_at_both(window, name, language, found, arguments, f"#{page}")
 
@@ -357,9 +368,10 @@ def main(words: Sequence[str] | None = None) -> int:
     files = [*write_sheets(found, arguments.folder)]
     for name, latin in sorted(found.foreign.items()):
         print(f"{name}: in Latin letters: {', '.join(sorted(latin))}")
-    print(
-        f"{len({name for name, _wide in found.pictures})} panels, {len(files)} sheets, {found.audits} audits"
-    )
+    for combination in sorted(found.audited | found.captured):
+        pictures, audits = found.captured[combination], found.audited[combination]
+        print(f"{combination}: {pictures} pictures, {audits} audits")
+    print(f"{len({name for name, _wide in found.pictures})} panels, {len(files)} sheets")
     return int(bool(found.wrong))
 
 

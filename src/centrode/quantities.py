@@ -489,6 +489,10 @@ FORCES = (
     Quantity("friction_reach", "Δq", "rad", mark("departure up to which dry friction holds, linearised")),
     Quantity("friction_band", "q", "rad", mark("ends of the interval in which dry friction holds")),
     Quantity("friction_holds_everywhere", "", "1", mark("whether dry friction holds in every position")),
+    Quantity("friction_share", "", "1", mark("share of the friction that keeps the initial position")),
+    Quantity(
+        "friction_feeds_itself", "", "1", mark("whether friction that feeds itself may slip there as well")
+    ),
     Quantity("branch", "", "1", mark("number of a branch of equilibria")),
     Quantity("branch_value", "p", "1", mark("number that is varied along a branch of equilibria")),
     Quantity("branch_coordinate", "q", "rad", mark("generalised coordinate along a branch of equilibria")),

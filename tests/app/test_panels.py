@@ -8,7 +8,7 @@ import re
 import pytest
 
 from centrode.app.frames import read_frame
-from centrode.app.panels import shown_topics
+from centrode.app.panel_titles import shown_topics
 from centrode.model.examples import example_text
 
 EXAMPLES = {

@@ -15,6 +15,7 @@ from centrode.app.documents import TEXT_SIZE, digest_of
 from centrode.app.folders import WorkFolder
 from centrode.app.frames import read_frame
 from centrode.app.server import CODE_SECONDS, MESSAGE_SIZE, OneTimeCodes, ServerSettings, server_application
+from centrode.app.service import work_folder_of
 from centrode.app.workers import DirectRunner, ProcessRunner, reply_to
 from centrode.errors import InputError
 from centrode.locale import speaking
@@ -152,6 +153,13 @@ def test_great_files_are_refused(tmp_path):
     (tmp_path / "great.toml").write_bytes(b"#" * (4 * TEXT_SIZE + 1))
     with pytest.raises(InputError, match="bytes"):
         WorkFolder(tmp_path).read("great.toml")
+
+
+def test_a_folder_is_worked_in_where_it_is_named(tmp_path):
+    (tmp_path / "press.toml").mkdir()
+    assert work_folder_of(tmp_path / "press.toml") == WorkFolder((tmp_path / "press.toml").resolve())
+    with pytest.raises(InputError, match="this is not a file"):
+        WorkFolder(tmp_path).read("press.toml")
 
 
 def test_bad_texts_have_problems_at_their_lines(ask):

@@ -8,7 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.chains import planar_drawings
-from centrode.chains.lists import chain_list
+from centrode.chains.kinematic_chains import chain_list
 from centrode.cli.main import main
 from centrode.views.chains import chains_sheet
 

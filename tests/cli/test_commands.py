@@ -8,10 +8,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import click
 import pytest
 
 import centrode as ct
+from centrode.cli import output
+from centrode.cli.main import COMMANDS
 from centrode.model.schema import mechanism_schema
+from centrode.render.plain_table import width_of
 
 Centrode = Callable[..., Any]
 
@@ -87,6 +91,35 @@ def test_the_schema_is_json(centrode: Centrode) -> None:
     done = centrode("schema")
     assert done.code == 0
     assert json.loads(done.out) == mechanism_schema()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["centres", "six-bar-press"],
+        ["rotatability", "six-bar-press"],
+        ["angles", "jansen-leg", "--no-figures"],
+        ["check", "slider-between-cranks"],
+    ],
+)
+def test_a_terminal_gets_lines_that_it_holds(
+    centrode: Centrode, monkeypatch: pytest.MonkeyPatch, arguments: list[str]
+) -> None:
+    """The same words as in a file, in lines of eighty columns."""
+    into_file = centrode(*arguments)
+    monkeypatch.setattr(output, "terminal_width", lambda: 80)
+    printed = centrode(*arguments)
+    assert max(map(width_of, into_file.out.splitlines())) > 80
+    assert max(map(width_of, printed.out.splitlines())) <= 80
+    assert sorted(printed.out.split()) == sorted(into_file.out.split())
+
+
+def test_the_help_of_every_command_explains_what_is_given(centrode: Centrode) -> None:
+    """Whatever stands in capitals in a line of usage has a line of its own below it."""
+    for command in COMMANDS:
+        given = [one for one in command.params if isinstance(one, click.Argument)]
+        assert all(getattr(one, "help", None) for one in given), command.name
+        assert not given or "Positional arguments:" in centrode(str(command.name), "--help").out
 
 
 @pytest.mark.parametrize(

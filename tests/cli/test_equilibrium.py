@@ -91,3 +91,55 @@ def test_exit_codes_tell_what_is_wrong(centrode: Centrode, folder: Path) -> None
     assert done.code == 2 and "no range is given" in done.err
     done = centrode("modes", "rod.toml", "--hold", "X=1")
     assert done.code == 2 and 'no drive "X"' in done.err
+
+
+HELD = """\
+title = "A block on a slope"
+gravity = [0, -9.81]
+[frame.points]
+O = [0, 0]
+[links.block]
+points = { B = [0, 0] }
+mass = 2
+[[guides]]
+point = "B"
+on = "frame"
+through = "O"
+direction = "15 deg"
+link = "block"
+[[drives]]
+guide = "B"
+start = 0
+[[loads]]
+kind = "friction"
+guide = "B"
+coefficient = 0.3
+"""
+CONTROLLER = """\
+[[controllers]]
+name = "pull"
+drive = "B"
+target = 0.1
+proportional = 500
+derivative = 60
+"""
+
+
+def test_friction_alone_and_a_controller_hold_a_block(centrode: Centrode, folder: Path) -> None:
+    (folder / "block.toml").write_text(HELD, encoding="utf-8")
+    done = centrode("equilibrium", "block.toml", "--out", "rests")
+    assert done.code == 0, done
+    assert done.rows["equilibria"] == "0" and done.rows["friction holds"] == "in every position"
+    # tan 15 deg over 0.3
+    assert done.rows["the initial position takes"] == "89.3164 % of the friction: it stays"
+    assert "in every position" in ct.summary(ct.open(folder / "rests" / "equilibria.nc"))
+    assert "friction alone holds it" in centrode("modes", "block.toml").err
+    (folder / "pulled.toml").write_text(HELD + CONTROLLER, encoding="utf-8")
+    done = centrode("equilibrium", "pulled.toml", "--out", "pulled")
+    weight = 2 * 9.81 * math.sin(math.radians(15))
+    assert done.rows["pull gives"] == f"{weight:+.6g} N"
+    found = ct.open(folder / "pulled" / "equilibria.nc")
+    assert math.isclose(float(found.drive_value[0, 0]), 0.1 - weight / 500, rel_tol=1e-12)
+    reach = 0.3 * 2 * 9.81 * math.cos(math.radians(15)) / 500
+    ends = np.sort(found.friction_band.values.ravel())
+    assert np.allclose(ends, [0.1 - weight / 500 - reach, 0.1 - weight / 500 + reach], rtol=1e-9)

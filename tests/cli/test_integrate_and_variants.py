@@ -319,7 +319,7 @@ def test_variants_refuse_wrong_formats(
 
 def test_variants_in_processes_of_the_real_command(centrode: Centrode, folder: Path, table: Path) -> None:
     """Several processes say and write the same as one, byte by byte, of variants that are refused too."""
-    table.write_text(TABLE + "4;-1;1,9;3,5\n", encoding="utf-8")
+    table.write_text("".join(TABLE.splitlines(keepends=True)[:3]) + "4;-1;1,9;3,5\n", encoding="utf-8")
     words = ["variants", "t.csv", "--topology", "slider-between-cranks"]
     done = subprocess.run(
         [sys.executable, "-m", "centrode", *words, "--jobs", "2", "--out", "r"],
@@ -328,7 +328,7 @@ def test_variants_in_processes_of_the_real_command(centrode: Centrode, folder: P
     one = centrode(*words, "--out", "one")
     assert done.returncode == one.code == 3
     assert done.stderr == one.err
-    assert "4 variants: ok 2, locks 1, refused 1" in done.stdout
+    assert "3 variants: ok 1, locks 1, refused 1" in done.stdout
     assert done.stdout.replace(f"r{os.sep}summary", f"one{os.sep}summary") == one.out
     written = [
         {file.relative_to(out): file.read_bytes() for file in Path(out).rglob("*") if file.is_file()}

@@ -94,6 +94,18 @@ def test_a_regime_that_is_not_there_is_told(centrode: Centrode, folder: Path) ->
         (["disc.toml", "--driving", "3", "--turns", "0"], "turns"),
         (["disc.toml", "--driving", "3", "--turns", "1", "--scheme", "runge-kutta-4"], "fixed steps"),
         (["disc.toml", "--driving", "3", "--duration", "1", "--steps", "0"], "steps"),
+        (
+            ["disc.toml", "--driving", "3", "--duration", "1", "--steps", "9"],
+            "chooses its steps by the tolerance",
+        ),
+        (
+            ["disc.toml", "--driving", "3", "--duration", "1", "--tolerance", "-1"],
+            "must be positive, got -1\n",
+        ),
+        (
+            ["disc.toml", "--duration", "1", "--scheme", "runge-kutta-4", "--tolerance", "1e-6"],
+            "fixed steps have no tolerance",
+        ),
         (["disc.toml", "--driving", "3", "--duration", "1", "--scheme", "euler"], "euler"),
         (["crank-rocker", "--driving", "3", "--duration", "1"], "neither masses nor loads"),
         (["two-link-arm", "--driving", "3", "--duration", "1"], "neither masses nor loads"),

@@ -118,7 +118,8 @@ def test_machines_that_no_train_can_drive(results: Any) -> None:
     )
     with pytest.raises(InputError, match="no pair behind"):
         ct.train_mechanism(bare, "six-bar-press")
-    with pytest.raises(InputError, match="one drive that turns a link"):
-        ct.train_mechanism(results, "five-bar-two-drives")
+    for machine in ("five-bar-two-drives", "spherical-four-bar"):
+        with pytest.raises(InputError, match="plane machine with one drive that turns a link"):
+            ct.train_mechanism(results, machine)
     with pytest.raises(InputError, match="both have"):
         ct.train_mechanism(results, ct.train_mechanism(results, "six-bar-press"))

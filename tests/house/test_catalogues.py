@@ -69,6 +69,17 @@ def test_updating_and_compiling_again_changes_no_byte(tool: ModuleType) -> None:
     assert not any(b"Date" in text for text in before.values())
 
 
+def test_reading_and_writing_again_keeps_the_order(tool: ModuleType) -> None:
+    """Sentences are sorted by their files alone: the lines, by which they were found, stand in no catalogue."""
+    (tool.CODE / "stairs.py").write_text('_("length {length} is wrong")\n')
+    (tool.CODE / "room.py").write_text('_("length {length} is wrong")\n_("one room")\n')
+    tool.update()
+    before = {language: tool.po_path(language).read_bytes() for language in tool.TRANSLATED}
+    for language in tool.TRANSLATED:
+        tool.write(language, tool.read(language))
+    assert {language: tool.po_path(language).read_bytes() for language in tool.TRANSLATED} == before
+
+
 def complaints(tool: ModuleType, capsys: pytest.CaptureFixture[str]) -> str:
     capsys.readouterr()
     assert tool.check() == 1

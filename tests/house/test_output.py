@@ -23,6 +23,20 @@ def test_table_without_rows() -> None:
     assert aligned_text([], header=["a", "b"]) == "a  b"
 
 
+def test_a_table_is_no_wider_than_the_terminal() -> None:
+    """Cells and heads take several lines; a number keeps its unit, an equation its sides."""
+    rows = [["P10", "OA relative to the frame", "at OA = 0.5 rad"], ["P20", "none", "-"]]
+    assert aligned_text(rows, header=["centre", "pair of bodies", "place"], width=36).splitlines() == [
+        "        pair of",
+        "centre  bodies         place",
+        "P10     OA relative    at",
+        "        to the frame   OA = 0.5 rad",
+        "P20     none           -",
+    ]
+    assert aligned_text(rows, width=100) == aligned_text(rows)
+    assert aligned_text(rows, width=1).count("OA = 0.5 rad") == 1  # what cannot be narrower stays
+
+
 def test_folder_gets_its_files_at_the_end(tmp_path: Path) -> None:
     out = tmp_path / "new" / "result"
     with output_folder(out) as draft:

@@ -139,6 +139,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "wear",
     }
     known |= {"stability", "growth_rate", "holding_moment", "friction_reach", "friction_holds_everywhere"}
+    known |= {"friction_share", "friction_feeds_itself"}
     known |= {f"{kind}_frequency" for kind in ("damped", "natural", "undamped", "critical")}
     known |= {"damping_ratio", "mode_amplitude", "mode_phase", "friction_band", "branch"}
     known |= {f"branch_{name}" for name in ("value", "coordinate", "stability")}

@@ -196,3 +196,11 @@ def test_a_drive_with_the_name_of_a_variable_has_no_coordinate() -> None:
     text = ct.mechanism_text(ROCKER).replace("[links.OA]", '[links.angle]\npoints = ["O", "A"]')
     data = ct.motion(ct.parse_mechanism(text.replace('link = "OA"', 'link = "angle"')), 5)
     assert data.angle.dims == ("sample", "link") and data.drive.values.tolist() == ["angle"]
+
+
+def test_labels_of_two_results_have_nothing_in_common() -> None:
+    one, other = ct.motion("crank-rocker", 5), ct.motion("crank-rocker", 5)
+    one["point"].attrs["seen"] = "yes"
+    one["point"].encoding["seen"] = "yes"
+    for later in (other, ct.motion("crank-rocker", 5)):
+        assert "seen" not in later["point"].attrs | later["point"].encoding

@@ -142,3 +142,12 @@ def test_plain_numbers_pass_through() -> None:
         assert getattr(JETS, name)(0.5) == pytest.approx(getattr(ARRAYS, name)(0.5), rel=4 * EPS)
     assert JETS.atan2(0.5, -1.0) == math.atan2(0.5, -1.0)
     assert "Jet(" in repr(Jet.variable(1.0, 1))
+
+
+def test_sine_and_cosine_at_once_are_each_alone() -> None:
+    x = Jet([np.linspace(-3.0, 3.0, 7), 1.0, 0.25])
+    sine, cosine = JETS.sine_and_cosine(x)
+    for both, alone in ((sine, JETS.sin(x)), (cosine, JETS.cos(x))):
+        for one, other in zip(both.coefficients, alone.coefficients, strict=True):
+            np.testing.assert_array_equal(one, other)
+    assert JETS.sine_and_cosine(0.5) == (JETS.sin(0.5), JETS.cos(0.5))

@@ -118,10 +118,6 @@ def test_a_dwell_as_long_as_that_of_the_published_linkage(published) -> None:
             "links.X.length",
         ),
         ({"kind": "strokes"}, "neither a stroke nor a dwell is given"),
-        (
-            {"kind": "motion", "targets": [[0, 0, 0], [1, 1, 1]]},
-            "poses are synthesised for four-bar linkages",
-        ),
         ({"kind": "strokes", "dwell": {"range": ["10 deg", "380 deg"]}}, "less than a turn apart"),
     ],
 )
@@ -270,19 +266,6 @@ def test_place_is_the_best_one() -> None:
     for change in (1e-3, -1e-3, 1e-3j, -1e-3j):
         assert cost(at.factor * (1 + change), at.shift - at.factor * change * curve.mean()) > best
         assert cost(at.factor, at.shift + change) > best
-
-
-def test_size_and_pivots_of_a_placed_answer(published) -> None:
-    factor, shift = MOVED_BY
-    targets = factor * (published.position.sel(point="P").to_numpy()[2:70:5] @ np.array([1, 1j])) + shift
-    wanted = {
-        "kind": "path",
-        "targets": np.column_stack([targets.real, targets.imag]).tolist(),
-        "place": "free",
-    }
-    for constraints, name in (({"size": [1, 1]}, "size"), ({"pivots": {"x": [90, 99]}}, r"pivots\.x")):
-        with pytest.raises(ct.MotionError, match=f"the nearest breaks {name}"):
-            synthesise(constraints=constraints, answers=1, **wanted)
 
 
 def test_place_stands_as_it_is_unless_it_is_free() -> None:

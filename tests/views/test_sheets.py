@@ -354,6 +354,14 @@ def test_radians_have_degrees_behind_them() -> None:
     assert PlainSpelling(radians).text(Number(0.25, "m", ".9g", degrees_too=True)) == "0.25 m"
 
 
+def test_nothing_has_no_exponent() -> None:
+    """An exact zero is spelled so by terminals as by documents; rounding errors keep their power of ten."""
+    plain, document = PlainSpelling(Display()), DocumentSpelling(Numbers(Display()))
+    zeros = [Number(0.0, digits=".1e"), Number(-0.0, digits=".1e")]
+    assert {spelling.text(zero) for spelling in (plain, document) for zero in zeros} == {"0"}
+    assert plain.text(Number(5.6e-17, digits=".1e")) == "5.6e-17"
+
+
 def test_fixed_columns_stay_in_si(tmp_path: Path) -> None:
     columns = (Column("a", np.array([1.0]), "rad", unit_fixed=True), Column("b", np.array([math.pi]), "rad"))
     write_table(Table(columns), tmp_path / "t.csv", Display(angle="deg"))

@@ -63,7 +63,7 @@ def test_a_sweep_that_is_no_table_is_refused(monkeypatch: pytest.MonkeyPatch) ->
 def test_names_of_variants_come_out_character_by_character(hostile: str, tmp_path: Path) -> None:
     rows = (
         VariantRow(hostile, False, 1.25, "rad", "group CB-BD (point B)", "CB and BD are collinear", "locks"),
-        VariantRow("other", None, None, "", "", "length must be positive, got -1.0", "refused"),
+        VariantRow("other", None, None, "", "", "length must be positive, got -1", "refused"),
     )
     found = Variants(CRANK_ROCKER, (), rows)
     lines = ct.summary(found).splitlines()
@@ -75,4 +75,4 @@ def test_names_of_variants_come_out_character_by_character(hostile: str, tmp_pat
     with (tmp_path / "t.csv").open(encoding="utf-8-sig", newline="") as file:
         first, second = list(csv.reader(file, delimiter=";"))[1:]
     assert first == [hostile, "no", "1,25", "group CB-BD (point B)", "CB and BD are collinear", "locks"]
-    assert second[4] == "length must be positive, got -1.0"
+    assert second[4] == "length must be positive, got -1"

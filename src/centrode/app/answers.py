@@ -21,6 +21,7 @@ from centrode.app.gear_bench import gear_answer
 from centrode.app.motion_frames import motion_answer
 from centrode.app.move_drags import place_on_way, way_of
 from centrode.app.operations import apply_operations
+from centrode.app.panel_titles import failure_texts
 from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
@@ -108,7 +109,8 @@ class Workbench:
                 return {"id": number, "unknown": unknown.digest}
             except CentrodeError as failure:
                 where = f"{failure.where}: " if failure.where else ""
-                return {"id": number, "error": {"message": where + failure.what, "repair": failure.repair}}
+                what, repair = failure_texts(failure)
+                return {"id": number, "error": {"message": where + what, "repair": repair}}
             except (RecursionError, MemoryError):
                 what = _("this takes more memory than the workbench has")
                 return {"id": number, "error": {"message": what, "repair": ""}}
@@ -274,7 +276,8 @@ class Workbench:
             document.require_prepared()
             header, arrays = motion_answer(document.require_mechanism(), count)
         except CentrodeError as failure:
-            return {"missing": failure.what, "repair": failure.repair}
+            what, repair = failure_texts(failure)
+            return {"missing": what, "repair": repair}
         return frame_bytes({"id": message.get("id", 0), **header}, arrays)
 
     def example(self, message: Message) -> Answer:

@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 
 from pydantic import ValidationError
 
+from centrode.app.panel_titles import with_panel_titles
 from centrode.app.text_places import line_and_column, text_places
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.preparation import Ready, ready
@@ -55,8 +56,8 @@ class TextProblem:
     def as_dict(self) -> dict[str, Any]:
         """As a message holds it."""
         return {
-            "message": self.message,
-            "repair": self.repair,
+            "message": with_panel_titles(self.message),
+            "repair": with_panel_titles(self.repair),
             "line": self.line,
             "column": self.column,
             "path": self.path,

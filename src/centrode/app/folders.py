@@ -74,6 +74,8 @@ class WorkFolder:
         try:
             if path.is_symlink():
                 raise InputError(name, _("links to other files are not followed"), _("open the file itself"))
+            if path.is_dir():  # Linux opens one, and fails when it is read
+                raise InputError(name, _("this is not a file"), _("give the path of a file"))
             handle = os.open(path, flags)
         except FileNotFoundError:
             raise InputError(name, _("there is no such file"), "") from None

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from centrode import render
 from centrode.app.documents import Document
 from centrode.app.motion_frames import MOST_FRAMES, player_frames
+from centrode.app.panel_titles import failure_texts, shown_topics, with_panel_titles
 from centrode.errors import CentrodeError, InputError
 from centrode.kinematics.motion import default_instants
 from centrode.locale import _, mark
@@ -16,7 +17,6 @@ from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.sheets.sheet import Formula
 from centrode.topics.arguments import option_arguments
-from centrode.topics.registry import TOPICS
 from centrode.topics.sheets import sheet_with_parts
 from centrode.topics.topic import (
     ChoiceOption,
@@ -41,11 +41,6 @@ CONCERNS_NOTHING = mark("this description has nothing that this topic is about")
 FORMULAS = Lazily("centrode.report.html.mathematics", "formulas_of")
 SPELLING = Lazily("centrode.render.document.spelling", "DocumentSpelling")
 NUMBERS = Lazily("centrode.render.document.numbers", "Numbers")
-
-
-def shown_topics() -> tuple[Topic, ...]:
-    """Topics that the workbench shows, in the order of commands and chapters."""
-    return tuple(topic for topic in TOPICS if topic.title and topic.subject in ("mechanism", "cam"))
 
 
 def topic_list() -> list[dict[str, Any]]:
@@ -148,15 +143,22 @@ def panel_of(
     try:
         sheet, description = topic_sheet(document, topic, options, samples, plays=True)
         shows = topic.panel is None or topic.panel.pictures
-        blocks = render.panel_blocks(sheet, description.display, mathematics_of(description), pictures=shows)
+        blocks = render.panel_blocks(
+            sheet,
+            description.display,
+            mathematics_of(description),
+            pictures=shows,
+            sentences=with_panel_titles,
+        )
         motions, arrays = player_frames(render.panel_motions(sheet))
     except CentrodeError as failure:
         where = f"{failure.where}: " if failure.where else ""
+        what, repair = failure_texts(failure)
         return {
             "topic": topic.name,
             "title": _(topic.title),
-            "missing": where + failure.what,
-            "repair": failure.repair,
+            "missing": where + what,
+            "repair": repair,
         }, {}
     return {"topic": topic.name, "title": _(topic.title), "blocks": blocks, "motions": motions}, arrays
 

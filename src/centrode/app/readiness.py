@@ -13,6 +13,7 @@ from centrode.locale import _
 from centrode.sheets.texts import Number
 from centrode.structure.constraints import constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import dimensions_of
+from centrode.structure.plan import drives_against_mobility
 from centrode.views import structure
 
 
@@ -58,15 +59,13 @@ def _missing_parts(sketch: SketchParts) -> list[str]:
     given = len(sketch.drives)
     if freedom is not None and freedom > given:
         sentences.append(
-            _("the mobility is {mobility}, and {drives} drives are given: switch Drive on at a link").format(
-                mobility=freedom, drives=given
+            _("{comparison}: switch Drive on at a link").format(
+                comparison=drives_against_mobility(given, freedom)
             )
         )
     elif freedom is not None and freedom < given:
         sentences.append(
-            _("the mobility is {mobility}, and {drives} drives are given: remove one").format(
-                mobility=freedom, drives=given
-            )
+            _("{comparison}: remove one").format(comparison=drives_against_mobility(given, freedom))
         )
     elif not given:
         sentences.append(_("nothing drives the mechanism: switch Drive on at a link"))

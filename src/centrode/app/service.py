@@ -25,9 +25,9 @@ WAITING_BROWSERS = 128
 
 
 def work_folder_of(file: Path | None) -> WorkFolder:
-    """The folder of a file, or the working folder; InputError for a file that is none of a description."""
-    if file is None:
-        return WorkFolder(Path().resolve())
+    """The folder that is named, or that of a file; the working folder by default. InputError for other files."""
+    if file is None or file.is_dir():
+        return WorkFolder((file or Path()).resolve())
     folder = file.parent.resolve()
     if not folder.is_dir():
         raise InputError(str(file), _("there is no such folder"), _("check the path"))

@@ -104,6 +104,7 @@ WORDS: Mapping[str, str] = {
     "ready": mark("The mechanism is complete and moves."),
     "loose_points": mark("Loose points:"),
     "panels": mark("Results"),
+    "other_topics": mark("Not for this description: {count}"),
     "panel_motion": mark("Curves"),
     "panel_cam": mark("Cam"),
     "no_motion": mark("The mechanism cannot move yet."),

@@ -175,7 +175,7 @@ def _short_paths(mechanism: Mechanism, kind: str, number: int) -> tuple[str, ...
 def _hint(mechanism: Mechanism) -> str:
     names = mechanism.link_names
     link = next((name for name in reversed(names) if mechanism.links[name].length is not None), names[-1])
-    return _("write a path such as links.{link}.length, or l{n}, phi{n}_0 for the {n}th link").format(
+    return _("write a path such as links.{link}.length, or l{n}, phi{n}_0 for link number {n}").format(
         link=link, n=names.index(link) + 1
     )
 

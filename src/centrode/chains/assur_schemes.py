@@ -93,3 +93,16 @@ def assur_groups(links: int) -> tuple[AssurScheme, ...]:
         for truss in chains(links + 1, 0)
         for inversion in truss.inversions
     )
+
+
+@dataclass(frozen=True)
+class AssurList:
+    """All Assur groups of so many links."""
+
+    links: int
+    groups: tuple[AssurScheme, ...]
+
+
+def assur_list(links: int) -> AssurList:
+    """All Assur groups of so many links as a result; raises as `assur_groups` does."""
+    return AssurList(links, assur_groups(links))

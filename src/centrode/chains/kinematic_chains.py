@@ -199,6 +199,26 @@ def chains(links: int, mobility: int = 1, *, cut_links: bool = False) -> tuple[K
     return _enumerated_chains(links, mobility, cut_links)
 
 
+@dataclass(frozen=True)
+class ChainList:
+    """All chains of so many links and so much mobility.
+
+    Attributes
+    ----------
+    cut_links : also those whose parts a single link holds together
+    """
+
+    links: int
+    mobility: int
+    cut_links: bool
+    chains: tuple[KinematicChain, ...]
+
+
+def chain_list(links: int, mobility: int = 1, *, cut_links: bool = False) -> ChainList:
+    """All chains of so many links as a result; raises as `chains` does."""
+    return ChainList(links, mobility, cut_links, chains(links, mobility, cut_links=cut_links))
+
+
 def _check_links(links: int, mobility: int) -> None:
     if mobility < 0:
         raise InputError("mobility", _("a chain has no fewer than 0 degrees of freedom"))

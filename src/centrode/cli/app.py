@@ -13,7 +13,13 @@ from centrode.optional_packages import how_to_install
 
 
 @click.command(help=mark("Draw a mechanism in a browser."))
-@click.argument("file", required=False, type=click.Path(path_type=Path), metavar=mark("[FILE]"))
+@click.argument(
+    "file",
+    required=False,
+    type=click.Path(path_type=Path),
+    metavar=mark("[FILE]"),
+    help=mark("A TOML file, or a folder of such files; the working folder by default."),
+)
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),

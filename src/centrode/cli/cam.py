@@ -69,7 +69,7 @@ def run(cam: str, out: Path | None, samples: int | None, animate: bool, **given:
                 names = output.file_names(draft)
     click.echo(_(description.title) or cam)
     for sheet in sheets:
-        if text := render.sheet_text(sheet, description.display):
+        if text := render.sheet_text(sheet, description.display, output.terminal_width()):
             click.echo("\n" + text)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))

@@ -63,7 +63,7 @@ def chains(
             if number is not None:
                 listed = _chosen(listed, number)
             sheet = library.chains_sheet(found, number)
-        click.echo(render.sheet_text(sheet, library.display()))
+        output.print_sheet(sheet, library.display())
         if out is None:
             return
         with output.output_folder(out) as draft:

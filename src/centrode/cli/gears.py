@@ -19,7 +19,11 @@ from centrode.optional_packages import how_to_install
 
 
 @click.command(help=mark("Compute a pair of gears: dimensions, sliding, true teeth."))
-@click.argument("pair", metavar=mark("FILE_OR_EXAMPLE"))
+@click.argument(
+    "pair",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in pair of gears."),
+)
 @click.option(
     "--animate", is_flag=True, help=mark("Also animate the mesh and the generation by the rack, as GIFs.")
 )
@@ -47,7 +51,7 @@ def gears(pair: str, animate: bool, out: Path | None, no_figures: bool, dark: bo
                 names = output.file_names(draft)
     click.echo(_(described.title) or pair)
     click.echo()
-    click.echo(render.sheet_text(sheet, described.display))
+    output.print_sheet(sheet, described.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
         if not render.writes_dxf():

@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from itertools import groupby
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
 
 import click
 
+from centrode import render
 from centrode.cli.tables import asked_spelling, table_files
 from centrode.errors import InputError
 from centrode.files.drafts import draft_file, draft_folder, refusals
 from centrode.files.inputs import keep_inputs
 from centrode.locale import _, ngettext
 
+if TYPE_CHECKING:
+    from centrode.model.settings import Display
+    from centrode.sheets.sheet import Sheet
+
 WIDTH = 100
 """Columns of a paragraph."""
+
+
+def print_sheet(sheet: Sheet, display: Display) -> None:
+    """Print a sheet; a terminal gets no line longer than it has columns, as far as words and numbers allow."""
+    click.echo(render.sheet_text(sheet, display, terminal_width()))
+
+
+def terminal_width() -> int | None:
+    """Columns of the terminal that is printed on; None where a file or another program takes what is printed."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def paragraph(heading: str, items: Sequence[str]) -> str:

@@ -107,7 +107,7 @@ def sweep(
 def _show(asked: SweepStudy, study: str, data: xr.Dataset, written: str) -> None:
     """Print what a result says and what was written; MotionError where nothing moves."""
     sheet, display = library.sheet_of(data), asked.mechanism.display
-    click.echo(render.sheet_text(sheet, display))
+    output.print_sheet(sheet, display)
     click.echo("\n" + written)
     if sheet.failure is not None:
         what, repair = (

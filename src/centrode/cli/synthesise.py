@@ -38,7 +38,9 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 
 
 @click.command(help=mark("Find mechanisms for a path, a function, poses or strokes."))
-@click.argument("wanted", metavar=mark("FILE"))
+@click.argument(
+    "wanted", metavar=mark("FILE"), help=mark("A TOML file with what is wanted below [synthesis].")
+)
 @written_option
 @click.option(
     "--jobs",
@@ -52,8 +54,7 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 @dark_option
 def synthesise(wanted: str, out: Path | None, jobs: int, no_figures: bool, dark: bool) -> None:
     """Print the answers, and write them with their pictures where a folder is named."""
-    with about(wanted):
-        task = library.read_synthesis(wanted)
+    task = library.read_synthesis(wanted)
 
     with Progress() as progress, _interruption() as stopped:
 
@@ -73,6 +74,6 @@ def synthesise(wanted: str, out: Path | None, jobs: int, no_figures: bool, dark:
                 names = output.file_names(draft)
     click.echo(_(task.title) or wanted)
     click.echo()
-    click.echo(render.sheet_text(sheet, task.display))
+    output.print_sheet(sheet, task.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))

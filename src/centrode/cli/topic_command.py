@@ -88,7 +88,7 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
                 )
             click.echo(_(description.title) or mechanism)
             click.echo()
-            click.echo(render.sheet_text(sheet, description.display))
+            output.print_sheet(sheet, description.display)
             if files:
                 click.echo("\n" + files)
             with about(mechanism):

@@ -20,7 +20,11 @@ MECHANISM = "train.toml"
 
 
 @click.command(help=mark("Find trains of gears of a ratio: teeth, efficiency, speeds."))
-@click.argument("train", metavar=mark("FILE_OR_EXAMPLE"))
+@click.argument(
+    "train",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in train of gears."),
+)
 @click.option(
     "--drives",
     "machine",
@@ -48,7 +52,7 @@ def trains(train: str, machine: str | None, out: Path | None, no_figures: bool, 
                 names = output.file_names(draft)
     click.echo(_(described.title) or train)
     click.echo()
-    click.echo(render.sheet_text(sheet, described.display))
+    output.print_sheet(sheet, described.display)
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
         click.echo(_("the chosen train moves with: centrode run {file}").format(file=out / MECHANISM))

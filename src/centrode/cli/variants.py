@@ -129,7 +129,7 @@ def variants(
 
 def _show(sheet: Sheet, table: str, folder: Path, written: Sequence[str], display: Display) -> None:
     """Print the table and what was written; MotionError where a variant was refused."""
-    click.echo(render.sheet_text(sheet, display))
+    output.print_sheet(sheet, display)
     click.echo("\n".join(_("wrote {file}").format(file=folder / name) for name in written))
     if sheet.failure is not None:
         raise MotionError(table, render.plain_text(sheet.failure.what, display))

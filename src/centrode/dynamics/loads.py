@@ -421,18 +421,22 @@ class LoadTerm:
 
     def strength(self, state: State) -> Number:
         """The force [N] or moment [N m] itself."""
-        slope = self.coordinate.slope(state).value
-        q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
-        x, v = self.coordinate.value(state), slope * state.rate
-        sense = self._sense(state, v) if self.amount.depends_on_sense else 0.0
-        now = Situation(state.time, q, x, v, sense, state.m.base)
-        amount = self.amount(now)
+        amount = self.amount(self._situation(state))
         if self.gate is None:
             return amount
         if state.m is JETS:
             return np.where(grows(self.gate, state), amount, 0.0)
         speed = _speed_of_nodes(self.gate, state)
         return state.m.base.where(state.m.base.less(speed, 0.0), 0.0, amount)
+
+    def _situation(self, state: State) -> Situation:
+        """What the amount depends on; the coordinate and its speed are not computed, and zero, where it does not."""
+        uses = self.amount.uses
+        q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
+        x = self.coordinate.value(state) if "x" in uses else 0.0
+        v = self.coordinate.slope(state).value * state.rate if "v" in uses else 0.0
+        sense = self._sense(state) if self.amount.depends_on_sense else 0.0
+        return Situation(state.time, q, x, v, sense, state.m.base)
 
     @property
     def switches(self) -> tuple[Coordinate, ...]:
@@ -453,7 +457,7 @@ class LoadTerm:
         """What one unit of it does to points and links."""
         return (self.coordinate if self.works is None else self.works).pulls(state)
 
-    def _sense(self, state: State, speed: Number) -> Number:
+    def _sense(self, state: State) -> Number:
         if state.m is not JETS:
             return state.m.base.sign(_speed_of_nodes(self.coordinate, state))
         return np.sign(_sign_of_speed(self.coordinate, state))

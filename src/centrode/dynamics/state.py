@@ -295,8 +295,8 @@ class State:
         """Cosine and sine of a link's angle."""
         rotor = self.known.get(f"rotor {link}")
         if rotor is None:
-            angle = self.angle(link)
-            rotor = self.m.cos(angle), self.m.sin(angle)
+            sine, cosine = self.m.sine_and_cosine(self.angle(link))
+            rotor = cosine, sine
             self.known[f"rotor {link}"] = rotor
         assert isinstance(rotor, tuple)
         return rotor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -84,15 +84,37 @@ def couple(link: str, moment: Moment) -> Wrench:
     return Wrench(Entity("link", link), none, none, moment)
 
 
-def total(pulls: Iterable[Wrench], about: Vector) -> tuple[Vector, Moment]:
-    """Force and moment about a place of all pulls together."""
-    force: list[Number] = [0.0] * len(about)
-    moment: Moment = 0.0 if len(about) == 2 else NOWHERE
-    for pull in pulls:
-        force = [x + y for x, y in zip(force, pull.force, strict=True)]
-        turned = pull.moment_about(about)
-        moment = sphere.add(moment, turned) if isinstance(moment, tuple) else moment + turned
-    return tuple(force), moment
+def plus(summed: Number, number: Number) -> Number:
+    """A sum with one number more; a plain zero, of which forces of hinges are full, costs nothing."""
+    return summed if _is_zero(number) else summed + number
+
+
+@dataclass(frozen=True)
+class Resultant:
+    """Wrenches with their moments about one place, and what they come to together.
+
+    Attributes
+    ----------
+    pulls : all wrenches
+    moments : of each about the place
+    force, moment : of all together
+    """
+
+    pulls: Sequence[Wrench]
+    moments: Sequence[Moment]
+    force: Vector
+    moment: Moment
+
+    @classmethod
+    def of(cls, pulls: Sequence[Wrench], about: Vector) -> Resultant:
+        """The resultant about a place."""
+        moments = [pull.moment_about(about) for pull in pulls]
+        force: list[Number] = [0.0] * len(about)
+        moment: Moment = 0.0 if len(about) == 2 else NOWHERE
+        for pull, turned in zip(pulls, moments, strict=True):
+            force = [plus(x, y) for x, y in zip(force, pull.force, strict=True)]
+            moment = sphere.add(moment, turned) if isinstance(moment, tuple) else plus(moment, turned)
+        return cls(pulls, moments, tuple(force), moment)
 
 
 def components(moment: Moment) -> Vector:

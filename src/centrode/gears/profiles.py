@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -116,23 +117,32 @@ def _with_arcs(
 
 def _undercut_corner(wheel: GearWheel) -> tuple[float, float]:
     """Normal of the rack's edge, and roll of the involute, where both curves of an undercut wheel cross."""
-    generation, base, half = _generation(wheel), wheel.base / 2, wheel.half_base_angle
-    alpha = wheel.pair.transverse.pressure_angle
+    return _crossing_of_fillet_and_flank(*_generation(wheel), wheel.base / 2, wheel.half_base_angle)
+
+
+# A search of trains meets few undercut wheels, each of them in pairs with hundreds of others.
+@lru_cache(maxsize=128)
+def _crossing_of_fillet_and_flank(
+    rack: TransverseRack, pitch_radius: float, shift: float, base: float, half: float
+) -> tuple[float, float]:
+    """What `_undercut_corner` gives, by the generation, the base radius [m] and half a tooth's angle on it [rad]."""
+    alpha = rack.pressure_angle
+    fillet = partial(fillet_curve, rack, pitch_radius, shift)
 
     def beyond(normal: float) -> float:
         """By which angle the fillet lies outside the involute's flank on the same circle."""
-        (x, y), *_rest = fillet_curve(*generation, np.array([normal]))[0]
+        (x, y), *_rest = fillet(np.array([normal]))[0]
         roll = _roll(math.hypot(x, y), base)
         return math.atan2(x, y) - (half - (roll - math.atan(roll)))
 
     normals = np.linspace(math.pi / 2, alpha, 400)
-    places = fillet_curve(*generation, normals)[0]
+    places = fillet(normals)[0]
     radii = np.hypot(*places.T)
     over = normals[radii >= base]
     inside = normals[(radii < base) & (normals > over[0])] if len(over) else normals[:0]
     if len(inside):  # the corner may lie close to the base circle, where the involute begins
         start = brentq(
-            lambda normal: float(np.hypot(*fillet_curve(*generation, np.array([normal]))[0][0])) - base,
+            lambda normal: float(np.hypot(*fillet(np.array([normal]))[0][0])) - base,
             float(inside[-1]),
             float(over[0]),
             xtol=1e-15,
@@ -144,7 +154,7 @@ def _undercut_corner(wheel: GearWheel) -> tuple[float, float]:
     for before, after, left, right in zip(over, over[1:], values, values[1:], strict=False):
         if (left < 0) != (right < 0):
             normal = float(brentq(beyond, float(before), float(after), xtol=1e-15, rtol=8.9e-16))
-            return normal, _roll(float(np.hypot(*fillet_curve(*generation, np.array([normal]))[0][0])), base)
+            return normal, _roll(float(np.hypot(*fillet(np.array([normal]))[0][0])), base)
     return alpha, 0.0
 
 

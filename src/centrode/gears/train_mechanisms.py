@@ -140,11 +140,11 @@ def train_mechanism(results: GearTrainResults, machine: MechanismSource | None =
     ----------
     results : GearTrainResults
     machine : Mechanism, or the name of its file or of a built-in one
-        With one drive, which turns a link about a point of the frame at a constant speed. The pair behind the train
-        turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the crank
-        keeps its sense. Range, instants, loads by the angle of the crank and `[machine]` are converted to the motor:
-        its mean speed and the ratios of its shafts. `[machine]` is omitted where the crank returns only after more
-        than 60 turns of the motor: a cycle has whole turns of the drive.
+        In the plane, with one drive, which turns a link about a point of the frame at a constant speed. The pair behind
+        the train turns that link. The motor's angle is the new drive, zero where the crank's is that of its start; the
+        crank keeps its sense. Range, instants, loads by the angle of the crank and `[machine]` are converted to the
+        motor: its mean speed and the ratios of its shafts. `[machine]` is omitted where the crank returns only after
+        more than 60 turns of the motor: a cycle has whole turns of the drive.
 
     Raises
     ------
@@ -274,14 +274,15 @@ def _crank_of(mechanism: Mechanism, tables: dict[str, Any]) -> tuple[dict[str, A
     drives = tables.get("drives", [])
     link = str(drives[0].get("link")) if len(drives) == 1 else ""
     if (
-        link in mechanism.links
+        mechanism.space == "plane"
+        and link in mechanism.links
         and isinstance(drives[0].get("speed"), float)
         and "relative_to" not in drives[0]
     ):
         for point in mechanism.links[link].points:
             if point in tables["frame"]["points"]:
                 return drives[0], link, point
-    what = _("a train drives a machine with one drive that turns a link about a point of the frame")
+    what = _("a train drives a plane machine with one drive that turns a link about a point of the frame")
     raise InputError("machine", what, _("choose such a machine"))
 
 

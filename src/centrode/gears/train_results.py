@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from centrode.errors import InputError, MotionError
-from centrode.gears.any_train import AnyTrain
 from centrode.gears.closed_trains import ClosedTrain, set_of
 from centrode.gears.involutes import Array
 from centrode.gears.planetary_trains import (
@@ -17,7 +16,7 @@ from centrode.gears.planetary_trains import (
     OrdinaryTrain,
     PlanetaryTrain,
 )
-from centrode.gears.train_search import FoundTrains, TrainBounds, find_trains
+from centrode.gears.train_search import AnyTrain, FoundTrains, TrainBounds, find_trains
 from centrode.locale import _, ngettext
 from centrode.model.examples.catalogue import GearTrainSource, gear_train_of
 from centrode.model.gear_trains import ORDINARY, GearTrain

@@ -9,12 +9,11 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.gears.any_train import AnyTrain
 from centrode.gears.closed_trains import ClosedTrain, willis_ratio
 from centrode.gears.planetary_trains import (
     INTERNAL,
@@ -29,6 +28,8 @@ from centrode.gears.planetary_trains import (
 )
 from centrode.model.gear_trains import ClosedShafts
 
+AnyTrain: TypeAlias = PlanetaryTrain | CarrierSeries | ClosedTrain | OrdinaryTrain
+"""Every kind of train that is listed."""
 Whole = NDArray[np.int64]
 Train = TypeVar("Train", bound=AnyTrain)
 

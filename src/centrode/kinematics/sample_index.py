@@ -6,6 +6,7 @@ samples go together by their order, so its index aligns by order and is used to 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, Literal, Self, TypeAlias
 
@@ -342,14 +343,20 @@ def label_coordinates(coordinates: Mapping[str, Any]) -> xr.Coordinates:
     drives = coordinates["drive"]
     for name, value in coordinates.items():
         if isinstance(value, pd.Index):
-            indexes[name] = index = PandasIndex(value, name, coord_dtype=value.dtype)
-            variables |= index.create_variables()
+            indexes[name], variables[name] = _labels(name, tuple(value), value.dtype)
         else:
             variables[name] = xr.Variable(*value)
             if name in drives:
                 along[name] = variables[name]
     indexes |= dict.fromkeys(along, SampleIndex.from_variables(along, options={}))
     return xr.Coordinates(variables, indexes=indexes)
+
+
+@functools.lru_cache(maxsize=256)
+def _labels(name: str, labels: tuple[Hashable, ...], dtype: Any) -> tuple[PandasIndex, xr.Variable]:
+    """The index of labels along a dimension, and its variable, of which a dataset takes a copy."""
+    index = PandasIndex(pd.Index(labels, dtype=dtype), name, coord_dtype=dtype)
+    return index, index.create_variables()[name]
 
 
 def selectable(dataset: xr.Dataset) -> xr.Dataset:

@@ -222,7 +222,7 @@ def value_at(mechanism: Mechanism, path: str) -> float:
 
 
 def _is_dynamic(path: str) -> bool:
-    """Whether a path names a number of the loads, the machine, the simulation or gravity."""
+    """Whether a path names a number of loads, contacts, controllers, the machine, the simulation or gravity."""
     return path.partition(".")[0] in ROOMS
 
 

@@ -1,4 +1,4 @@
-"""Numbers of loads, contacts, the machine, the simulation and gravity by their paths: `loads.force H.vector.x`."""
+"""Numbers of loads, contacts, controllers, the machine, the simulation and gravity by their paths."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from centrode.model.loads import (
 )
 from centrode.model.reading import nearest, value_text
 
-ROOMS = ("loads", "machine", "simulation", "gravity", "stops", "clamps")
+ROOMS = ("loads", "machine", "simulation", "gravity", "stops", "clamps", "controllers")
 """First words of these paths."""
 
 FORMULA = "formula"
@@ -70,6 +70,11 @@ KINDS_OF_LOADS: Mapping[type, Mapping[str, str]] = {
     },
 }
 """Numbers of each load and the kind of each; a force in a point has the components of its vector."""
+
+NUMBERS_OF_CONTROLLERS: Mapping[str, str] = {
+    "target": FORMULA, "proportional": "ratio", "integral": "ratio", "derivative": "ratio", "most": "ratio",
+}  # fmt: skip
+"""Numbers of a controller and the kind of each; gains have the unit of its output per unit of what it measures."""
 
 _SHAFT = {"inertia": "inertia", "ratio": "ratio"}
 _PARTS: Mapping[str, Mapping[str, str]] = {
@@ -121,6 +126,8 @@ def place_of_number(mechanism: Description, tables: dict[str, Any], path: str) -
         return _component(tables, "gravity", rest, path, "acceleration")
     if room in ("stops", "clamps"):
         return _of_contact(mechanism, tables[room], room, rest, path)
+    if room == "controllers":
+        return _of_controller(mechanism, tables[room], rest, path)
     if room == "loads":
         return _of_load(mechanism, tables["loads"], rest, path)
     return _of_part(mechanism, tables, room, rest, path)
@@ -137,6 +144,8 @@ def with_number(place: PlaceOfNumber, value: float | str) -> float | int | str:
 
 def kind_of_place(mechanism: Description, place: PlaceOfNumber, path: str) -> str:
     """Kind of quantity ("force", "time", ...) of what stands at a place."""
+    if path.startswith("controllers.") and place.kind == FORMULA:
+        return "ratio"
     if path.startswith("simulation."):
         drive = mechanism.motion_parameter.drives[0]
         if place.kind == FORMULA:
@@ -185,6 +194,20 @@ def _of_contact(
             raise _unknown(path, key, list(known))
         return PlaceOfNumber(tables[number], key, known[key])
     raise _unknown(path, rest if rest in names else rest.partition(".")[0], names)
+
+
+def _of_controller(
+    mechanism: Description, tables: list[dict[str, Any]], rest: str, path: str
+) -> PlaceOfNumber:
+    """A gain, the target or the bound of a controller, by its name."""
+    names = [one.name for one in mechanism.controllers]
+    for name in sorted(names, key=len, reverse=True):
+        if rest.startswith(f"{name}."):
+            key = rest[len(name) + 1 :]
+            if key not in NUMBERS_OF_CONTROLLERS:
+                raise _unknown(path, key, list(NUMBERS_OF_CONTROLLERS))
+            return PlaceOfNumber(tables[names.index(name)], key, NUMBERS_OF_CONTROLLERS[key])
+    raise _unknown(path, "" if rest in names else rest.partition(".")[0], names)
 
 
 def numbers_of_contact(contact: Stop | Clamp, space: str) -> Mapping[str, str]:

@@ -101,7 +101,7 @@ def value_text(value: object) -> str:
         text = value if len(value) <= 60 else value[:57] + "..."
         return '"' + "".join(c if c.isprintable() else repr(c)[1:-1] for c in text) + '"'
     if isinstance(value, float):
-        return repr(value)
+        return repr(value).removesuffix(".0")
     if isinstance(value, int):
         return str(value) if abs(value) < 10**30 else _("a number of that size")
     if isinstance(value, dict):
@@ -416,6 +416,18 @@ def named_entries(value: object, read_key: Callable[[object], str], most: int) -
     if wrong:
         raise Problems(wrong)
     return named
+
+
+def entries_by_path(
+    value: Mapping[Any, Any], above: str = "", depth: int = 1
+) -> Iterator[tuple[str, object]]:
+    """Entries of tables within tables by their dotted paths: TOML reads links.DB.length as three tables."""
+    for key, entry in value.items():
+        path = f"{above}.{key}" if above else str(key)
+        if isinstance(entry, Mapping) and depth < NESTING:
+            yield from entries_by_path(entry, path, depth + 1)
+        else:
+            yield path, entry
 
 
 def _check_count(count: int, most: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeAlias
@@ -23,6 +23,7 @@ from centrode.model.reading import (
     bounded_list,
     choice,
     entries,
+    entries_by_path,
     nearest,
     read_name,
     value_text,
@@ -94,7 +95,7 @@ def _read_speeds(value: object) -> Mapping[str, Speed]:
         raise Problem(_("expected a table, got {value}").format(value=value_text(value)))
     given: dict[str, Speed] = {}
     wrong: list[Problem] = []
-    for path, entry in _by_path(value, ""):
+    for path, entry in entries_by_path(value):
         try:
             name = _speed_path(path)
             if name in given:
@@ -106,15 +107,6 @@ def _read_speeds(value: object) -> Mapping[str, Speed]:
     if wrong:
         raise Problems(wrong)
     return FrozenMap(given)
-
-
-def _by_path(value: Mapping[Any, Any], above: str, depth: int = 1) -> Iterator[tuple[str, object]]:
-    for key, entry in value.items():
-        path = f"{above}.{key}" if above else str(key)
-        if isinstance(entry, Mapping) and depth < reading.NESTING:
-            yield from _by_path(entry, path, depth + 1)
-        else:
-            yield path, entry
 
 
 def _speed_path(path: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import PlainValidator, ValidationError, model_validator
@@ -23,6 +23,7 @@ from centrode.model.reading import (
     bounded_list,
     choice,
     entries,
+    entries_by_path,
     nearest,
     read_name,
     value_text,
@@ -113,7 +114,7 @@ def _read_dimensions(value: object) -> Mapping[str, Limits | str]:
     space = READING.get().space
     read: dict[str, Limits | str] = {}
     wrong: list[Problem] = []
-    for path, entry in _by_path(value, ""):
+    for path, entry in entries_by_path(value):
         try:
             room = path.partition(".")[0]
             if room not in ROOMS:
@@ -127,15 +128,6 @@ def _read_dimensions(value: object) -> Mapping[str, Limits | str]:
     if wrong:
         raise Problems(wrong)
     return FrozenMap(read)
-
-
-def _by_path(value: Mapping[Any, Any], above: str, depth: int = 1) -> Iterator[tuple[str, object]]:
-    for key, entry in value.items():
-        path = f"{above}.{key}" if above else str(key)
-        if isinstance(entry, Mapping) and depth < reading.NESTING:
-            yield from _by_path(entry, path, depth + 1)
-        else:
-            yield path, entry
 
 
 def _read_default(value: object) -> Limits | str:

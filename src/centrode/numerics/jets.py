@@ -253,8 +253,16 @@ class JetFunctions:
             return self.base.cos(x)
         return Jet(sine_and_cosine(x.coefficients, self.base.sin(x.value), self.base.cos(x.value))[1])
 
+    def sine_and_cosine(self, x: Number) -> tuple[Number, Number]:
+        """Both at once: each needs the derivatives of the other."""
+        if not isinstance(x, Jet):
+            return self.base.sin(x), self.base.cos(x)
+        sines, cosines = sine_and_cosine(x.coefficients, self.base.sin(x.value), self.base.cos(x.value))
+        return Jet(sines), Jet(cosines)
+
     def tan(self, x: Number) -> Number:
-        return self.sin(x) / self.cos(x)
+        sine, cosine = self.sine_and_cosine(x)
+        return sine / cosine
 
     def exp(self, x: Number) -> Number:
         if not isinstance(x, Jet):

@@ -20,6 +20,5 @@ from .panel_blocks import panel_motions as panel_motions
 from .panel_blocks import screen_text as screen_text
 from .plain_table import aligned_text as aligned_text
 from .terminal import fact_rows as fact_rows
-from .terminal import facts_text as facts_text
 from .terminal import sheet_text as sheet_text
 from .terminal import plain_text as plain_text

@@ -56,15 +56,21 @@ DIGITS = 7
 
 
 def panel_blocks(
-    sheet: Sheet, display: Display, mathematics: Mathematics | None = None, *, pictures: bool = True
+    sheet: Sheet,
+    display: Display,
+    mathematics: Mathematics | None = None,
+    *,
+    pictures: bool = True,
+    sentences: Callable[[str], str] = str,
 ) -> list[JSON]:
     """What a page shows of a sheet: its facts, what a terminal prints below them, its pictures and its notes.
 
     Parameters
     ----------
     mathematics : formulas as MathML; without it they are spelled as on a terminal
+    sentences : what the page makes of a translated sentence before its holes are filled
     """
-    writer = _BlockWriter(display, mathematics)
+    writer = _BlockWriter(display, mathematics, sentences)
     blocks: list[JSON] = []
     if sheet.heading != NOTHING:
         blocks.append({"kind": "heading", "text": writer.spelling.text(sheet.heading)})
@@ -104,9 +110,11 @@ def screen_text(text: Text, display: Display) -> str:
 class _BlockWriter:
     """Writes parts of a sheet as blocks."""
 
-    def __init__(self, display: Display, mathematics: Mathematics | None) -> None:
+    def __init__(
+        self, display: Display, mathematics: Mathematics | None, sentences: Callable[[str], str]
+    ) -> None:
         self.display, self.mathematics = display, mathematics
-        self.spelling = ScreenSpelling(display)
+        self.spelling = ScreenSpelling(display, sentences)
         self.formulas: list[tuple[JSON, Formula]] = []
         self.motions = 0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, decimal_mark, ngettext
@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 
 DASH = "–"
 """Stands for a number that is not there."""
+SCREEN_DIGITS = 6
+"""Significant digits of a number that people read on a screen; its files have all that it has."""
+LONG_FORMAT = re.compile(r"\.(?:[7-9]|1\d)g$")
+"""Formats with more digits than a screen shows."""
 
 
 class Spelling(ABC):
@@ -183,7 +187,11 @@ class PlainSpelling(Spelling):
         return self.unit(unit)
 
     def _digits(self, value: float, digits: str) -> str:
-        return DASH if math.isnan(value) else format(value, f"{digits}.6g" if digits in ("", "+") else digits)
+        if math.isnan(value):
+            return DASH
+        if not value and digits.endswith("e"):
+            return "0"
+        return format(value, f"{digits}.6g" if digits in ("", "+") else digits)
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""
@@ -247,14 +255,22 @@ class PrintSpelling(PlainSpelling):
 
 
 class ScreenSpelling(PrintSpelling):
-    """As on paper, with the decimal mark of the language; a semicolon parts coordinates where that is a comma."""
+    """As on paper, with the decimal mark of the language; a semicolon parts coordinates where that is a comma.
 
-    def __init__(self, display: Display | None) -> None:
+    `sentences` is what the page makes of a translated sentence before its holes are filled.
+    """
+
+    def __init__(self, display: Display | None, sentences: Callable[[str], str] = str) -> None:
         super().__init__(display)
         self.decimal = decimal_mark()
+        self.sentences = sentences
+
+    def _fill_message(self, message: str, values: Mapping[str, Text]) -> str:
+        return super()._fill_message(self.sentences(message), values)
 
     def _digits(self, value: float, digits: str) -> str:
-        return super()._digits(value, digits).replace(".", self.decimal)
+        read = LONG_FORMAT.sub(f".{SCREEN_DIGITS}g", digits)
+        return super()._digits(value, read).replace(".", self.decimal)
 
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place as "(1.25, 0) m" or "(1,25; 0) m"."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
-from centrode.render.plain_table import WIDTH, aligned_text, listing
+from centrode.render.plain_table import WIDTH, aligned_text, broken_text, listing
 from centrode.render.spelling import PlainSpelling
 from centrode.sheets.players import CamPlayer, MotionPlayer, WheelPlayer
 from centrode.sheets.sheet import (
@@ -33,10 +33,7 @@ if TYPE_CHECKING:
     from centrode.sheets.sheet import Column, ExplainedSymbol, Fact, Sheet
     from centrode.sheets.texts import Text
 
-
-def facts_text(facts: Iterable[Fact], display: Display) -> str:
-    """Facts below each other, their values aligned."""
-    return aligned_text(fact_rows(facts, display))
+INDENT = "  "
 
 
 def fact_rows(facts: Iterable[Fact], display: Display) -> list[tuple[str, str]]:
@@ -50,24 +47,30 @@ def plain_text(text: Text, display: Display) -> str:
     return PlainSpelling(display).text(text)
 
 
-def sheet_text(sheet: Sheet, display: Display) -> str:
+def sheet_text(sheet: Sheet, display: Display, width: int | None = None) -> str:
     """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts.
 
     Notes stand right below the last part.
+
+    Parameters
+    ----------
+    width : columns of the terminal, beyond which facts, tables and sentences are broken; where None only paragraphs are
     """
     spelling = PlainSpelling(display)
     heading = spelling.text(sheet.heading)
     parts = [heading] if heading else []
-    parts += [facts_text(sheet.facts, display)] if sheet.facts else []
+    parts += [aligned_text(fact_rows(sheet.facts, display), width=width)] if sheet.facts else []
     for block in sheet.printed:
-        text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
+        text = (
+            _section(block, spelling, width) if isinstance(block, Section) else _block(block, spelling, width)
+        )
         if not text:
             continue  # what a page plays
         if isinstance(block, Items) and parts:
             parts[-1] += "\n" + text  # what is above them is their heading
         else:
             parts.append(text)
-    notes = notes_of(sheet, spelling)
+    notes = [line for note in notes_of(sheet, spelling) for line in _lines(note, width)]
     return "\n".join(["\n\n".join(parts), *notes] if parts else notes)
 
 
@@ -76,33 +79,43 @@ def notes_of(sheet: Sheet, spelling: PlainSpelling) -> list[str]:
     return [_("note: {note}").format(note=spelling.text(note)) for note in sheet.notes]
 
 
-def _section(section: Section, spelling: PlainSpelling) -> str:
-    parts = [spelling.text(section.title), *(_part(block, spelling) for block in section.blocks)]
+def _lines(text: str, width: int | None) -> list[str]:
+    """A sentence as it is, or in lines that the terminal holds."""
+    return [text] if width is None else broken_text(text, width, INDENT)
+
+
+def _section(section: Section, spelling: PlainSpelling, width: int | None) -> str:
+    parts = [spelling.text(section.title), *(_part(block, spelling, width) for block in section.blocks)]
     return "\n".join(filter(None, parts))
 
 
-def _part(block: Block, spelling: PlainSpelling) -> str:
+def _part(block: Block, spelling: PlainSpelling, width: int | None) -> str:
     """A block below the title of a section: sentences and formulas are indented."""
-    text = _block(block, spelling)
     if not isinstance(block, Paragraph | Formula | SheetEquations | SymbolList):
-        return text
-    text = textwrap.indent(text, "  ")
+        return _block(block, spelling, width)
+    text = _block(block, spelling, None if width is None else width - len(INDENT))
+    text = textwrap.indent(text, INDENT)
     return f"{text}\n" if isinstance(block, SheetEquations) else text
 
 
-def _block(block: Block, spelling: PlainSpelling) -> str:
+def _block(block: Block, spelling: PlainSpelling, width: int | None) -> str:
     """A block as lines; pictures and checks belong to documents."""
+    narrow = WIDTH if width is None else min(WIDTH, width)
     match block:
         case FactTable(facts):
-            return aligned_text([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+            return aligned_text(
+                [(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts], width=width
+            )
         case Table():
-            return table_text(block, spelling)
+            return table_text(block, spelling, width)
         case Paragraph(text):
-            return textwrap.fill(spelling.text(text), WIDTH)
+            return textwrap.fill(spelling.text(text), max(narrow, 1))
         case Items(texts):
-            return "\n".join(f"  {spelling.text(item)}" for item in texts)
+            return "\n".join(
+                line for item in texts for line in _lines(f"{INDENT}{spelling.text(item)}", width)
+            )
         case Listing(heading, items):
-            return listing(spelling.text(heading), [spelling.text(item) for item in items])
+            return listing(spelling.text(heading), [spelling.text(item) for item in items], narrow)
         case Formula(relations):
             return "\n".join(line for one in relations for line in relation_lines(map(spelling.leaf, one)))
         case SheetEquations(matrix, unknowns, right):
@@ -117,12 +130,12 @@ def _block(block: Block, spelling: PlainSpelling) -> str:
             assert_never(block)
 
 
-def table_text(table: Table, spelling: PlainSpelling) -> str:
+def table_text(table: Table, spelling: PlainSpelling, width: int | None = None) -> str:
     """A table of texts below its caption; numbers without units of their own stand flush right."""
     heads, rows = table_cells(table, spelling)
     right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
     caption = spelling.text(table.caption)
-    return (f"{caption}\n" if caption else "") + aligned_text(rows, heads, right)
+    return (f"{caption}\n" if caption else "") + aligned_text(rows, heads, right, width)
 
 
 def table_cells(table: Table, spelling: PlainSpelling) -> tuple[list[str], list[tuple[str, ...]]]:

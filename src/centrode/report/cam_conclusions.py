@@ -15,7 +15,7 @@ from centrode.topics.cams import (
     FOLLOWER_PROFILE,
     ROLLER_PATH,
 )
-from centrode.views.cam_conclusions import cam_conclusions_chapter
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     from centrode.render.document.blocks import ChapterBlocks
@@ -23,13 +23,15 @@ if TYPE_CHECKING:
     from centrode.topics.topic import Topic
 
 NAME = "conclusions"
+# reports on linkages load no cams
+_chapter = Lazily("centrode.views.cam_conclusions", "cam_conclusions_chapter")
 
 
 def conclusions_of_cam(study: ReportStudy) -> ChapterBlocks | None:
     """What follows from the results of a cam; None of a linkage."""
     if not study.is_cam:
         return None
-    chapter = cam_conclusions_chapter(
+    chapter = _chapter(
         _result(FOLLOWER_MOTION, study),
         _result(FOLLOWER_PROFILE, study),
         _result(FOLLOWER_FORCES, study),

@@ -57,6 +57,8 @@ LONGEST_NUMBER = 24
 POINTS = 72.0 / 25.4
 """Points in a millimetre."""
 STYLE_IMPORT = '#import "style.typ": *'
+LETTERS = 1024
+"""Outlines that are kept: most figures of a document have the same letters."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 
@@ -220,6 +222,7 @@ def with_cubic_letters(svg: bytes) -> bytes:
     return _OUTLINE.sub(lambda found: found[1] + _cubic(found[2]) + found[3], svg)
 
 
+@functools.lru_cache(LETTERS)
 def _cubic(outline: bytes) -> bytes:
     """The outline of a letter with cubic curves for parabolas; as it is where it is not what matplotlib writes."""
     steps = _STEP.findall(outline)
@@ -391,7 +394,10 @@ def _pieces(formula: str) -> str:
 
 
 def _column(head: str, cells: Sequence[str], number: bool) -> str:
-    """What the width of a column is measured by: its head, the words that may not be cut, its longest cells."""
+    """What the width of a column is measured by: its head, the words that may not be cut, its longest cells.
+
+    The words of its head are the most lines that it has.
+    """
     longest = sorted(set(cells), key=lambda cell: (-len(cell), cell))[:WIDEST] or [""]
     words = _words(head)
     if not number:
@@ -399,6 +405,7 @@ def _column(head: str, cells: Sequence[str], number: bool) -> str:
         words += sorted(found, key=lambda word: (-len(word), word))[:WIDEST]
     fields = {
         "head": content(head),
+        "lines": f"{max(len(_words(head)), 1)}",
         "words": _array(words or [quote("")]),
         "longest": _array([_cell(cell) for cell in longest]),
         "number": "true" if number else "false",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 from centrode.geometry.plane import (
@@ -110,7 +111,7 @@ class DistanceDrive:
     size = 1
     angular = False
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("point", self.first), Entity("point", self.second)
 
@@ -145,7 +146,7 @@ class GearRatio:
     size = 1
     angular = True
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return tuple(Entity("link", name) for name in self.links)
 
@@ -235,7 +236,7 @@ class TrackContact(_OnTrack):
 
     angular = False
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("point", self.centre), Entity("link", self.on)
 
@@ -267,7 +268,7 @@ class NoSlip(_OnTrack):
 
     angular = True
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("link", self.link), Entity("point", self.centre), Entity("link", self.on)
 
@@ -325,7 +326,7 @@ class Standing:
     size = 1
     angular = True
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return (Entity("link", self.link),)
 
@@ -411,7 +412,7 @@ class PointInLink:
     size = 2
     angular = False
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("point", self.point), Entity("link", self.link)
 
@@ -447,7 +448,7 @@ class PointOnGuide:
     size = 1
     angular = False
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("point", self.point), Entity("link", self.on)
 
@@ -475,7 +476,7 @@ class NoTurning:
     size = 1
     angular = True
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("link", self.link), Entity("link", self.on)
 
@@ -508,7 +509,7 @@ class AngleDrive:
     size = 1
     angular = True
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("link", self.link), Entity("link", self.relative_to)
 
@@ -538,7 +539,7 @@ class DisplacementDrive:
     size = 1
     angular = False
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Entity, ...]:
         return Entity("point", self.point), Entity("link", self.on)
 

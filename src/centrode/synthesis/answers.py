@@ -73,6 +73,7 @@ class Answer:
     cognates : mechanisms that draw the same curve
     deviations : (targets) errors of a function [rad] with their sign; None of other kinds
     numbers : further named numbers with their SI unit
+    links : lines of links where the first target is met; empty of four-bar linkages, which their dimensions draw
     """
 
     mechanism: Mechanism
@@ -88,6 +89,7 @@ class Answer:
     cognates: tuple[Mechanism, ...] = ()
     deviations: Array | None = None
     numbers: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    links: tuple[Complex, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,6 @@ are those of the free numbers alone (G. H. Golub, V. Pereyra, SIAM J. Numer. Ana
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -53,35 +52,35 @@ def ordered_places(
     if not ordered:
         cells = np.argmin(distance, axis=1)
         return cells, part[count, cells]
-    best, chosen = math.inf, np.zeros(len(targets), dtype=np.int64)
     places = len(steps)
     closes = float(np.linalg.norm(curve[0] - curve[-1])) < 1e-6 * float(np.abs(curve).max() + 1e-300)
-    for sense in (1, -1):
-        own = distance[:, ::sense]
-        for cut in range(0, places, max(1, places // 12)) if closes else (0,):
-            cost, cells = monotone_places(np.roll(own, -cut, axis=1))
-            if cost < best:
-                best, chosen = cost, (cells + cut) % places
-                chosen = chosen if sense > 0 else places - 1 - chosen
+    cuts = np.arange(0, places, max(1, places // 12)) if closes else np.zeros(1, dtype=np.int64)
+    # (senses, cuts, places): which place of the curve comes after which
+    ways = (np.arange(places) + cuts[:, None]) % places
+    ways = np.stack([ways, places - 1 - ways])
+    costs, cells = monotone_places(distance[:, ways])
+    sense, cut = divmod(int(np.argmin(costs)), len(cuts))
+    chosen = ways[sense, cut][cells[:, sense, cut]]
     return chosen, part[count, chosen]
 
 
-def monotone_places(distance: Array) -> tuple[float, np.ndarray[tuple[int], np.dtype[np.int64]]]:
-    """Least sum of distances (n, places) over places that do not decrease, and the places (n,)."""
-    n, places = distance.shape
+def monotone_places(distance: Array) -> tuple[Array, np.ndarray[tuple[int, ...], np.dtype[np.int64]]]:
+    """Least sums (...) of distances (n, ..., places) over places that do not decrease, and the places (n, ...)."""
+    n, places = len(distance), distance.shape[-1]
     total = distance[0]
-    before = np.zeros((n, places), dtype=np.int64)
+    before = np.zeros(distance.shape, dtype=np.int64)
+    first = np.full((*total.shape[:-1], 1), True)
     for row in range(1, n):
-        run = np.minimum.accumulate(total)
+        run = np.minimum.accumulate(total, axis=-1)
         # the last place at which the running minimum was lowered
-        lowered = np.concatenate([[True], total[1:] < run[:-1]])
-        before[row] = np.maximum.accumulate(np.where(lowered, np.arange(places), 0))
+        lowered = np.concatenate([first, total[..., 1:] < run[..., :-1]], axis=-1)
+        before[row] = np.maximum.accumulate(np.where(lowered, np.arange(places), 0), axis=-1)
         total = run + distance[row]
-    cells = np.zeros(n, dtype=np.int64)
-    cells[-1] = int(np.argmin(total))
+    cells = np.zeros(distance.shape[:-1], dtype=np.int64)
+    cells[-1] = np.argmin(total, axis=-1)
     for row in range(n - 1, 0, -1):
-        cells[row - 1] = before[row, cells[row]]
-    return float(total.min()), cells
+        cells[row - 1] = np.take_along_axis(before[row], cells[row][..., None], axis=-1)[..., 0]
+    return total.min(axis=-1), cells
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,16 @@ from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import two_points
 from centrode.structure.groups import Aim, Meet, Rail, Rod, Slot
-from centrode.sweeps.solver import Solver
+from centrode.sweeps.outputs import identifier
 from centrode.synthesis.four_bars import Array, Complex
 from centrode.synthesis.requests import Constraints
 
 MARGIN = 1e-5
 """Share by which a limit is kept, so that what a weight leaves does not break it."""
+KEPT = 1e-6
+"""Part by which a limit may be missed."""
+PIVOT_MARGIN = 1e-7
+"""Of the box of fixed hinges, which may be as narrow as a point."""
 BOX_MARGIN = 2e-5
 """Of a box: what parabolas between samples leave is smaller."""
 Numbers: TypeAlias = Mapping[str, Array]
@@ -39,24 +43,40 @@ class MechanismConstraints:
     Attributes
     ----------
     outputs : name -> what the solver computes for it
-    misses : of these outputs and their derivatives: (m,) and (m, free)
+    misses : of these outputs, their derivatives and the number of free numbers: (m,) and (m, free)
+    points : those that stand among the outputs as they do in the plane, as "box_P_x" and "box_P_y"
     """
 
     outputs: Mapping[str, str]
-    misses: Callable[[Solver, Numbers, Numbers], tuple[Array, Array]]
+    misses: Callable[[Numbers, Numbers, int], tuple[Array, Array]]
+    points: tuple[str, ...] = ()
 
 
-def mechanism_constraints(mechanism: Mechanism, constraints: Constraints) -> MechanismConstraints:
-    """The constraints on size and transmission of a mechanism in the plane.
+def mechanism_constraints(
+    mechanism: Mechanism, constraints: Constraints, placed_size: float | None = None
+) -> MechanismConstraints:
+    """The constraints on size, transmission and lengths of a mechanism in the plane, of a placed one on its pivots too.
+
+    Pivots of a mechanism that stands where it is are ranges of its free numbers.
+
+    Parameters
+    ----------
+    placed_size : of the targets [m], on which a mechanism is placed; None where it stands as it is described
 
     Raises InputError where a transmission angle is required of a mechanism that has none.
     """
     outputs: dict[str, str] = {}
-    parts: list[Callable[[Solver, Numbers, Numbers], tuple[Array, Array]]] = []
+    parts: list[Callable[[Numbers, Numbers, int], tuple[Array, Array]]] = []
+    boxed: dict[str, None] = {}
     if constraints.size is not None:
         box = _BoxLimit(tuple(_points(mechanism)), constraints.size)
-        outputs |= {f"box_{p}_{axis}": f"position_{p}_{axis}" for p in box.points for axis in "xy"}
+        boxed |= dict.fromkeys(box.points)
         parts.append(box.misses)
+    pivots = constraints.pivots
+    if placed_size is not None and (pivots.x is not None or pivots.y is not None):
+        fixed = tuple(mechanism.frame.points)
+        boxed |= dict.fromkeys(fixed)
+        parts.append(_PivotLimit(fixed, (pivots.x, pivots.y), placed_size).misses)
     if constraints.transmission is not None:
         dyads = list(_dyads(mechanism, outputs))
         if not dyads:
@@ -65,18 +85,28 @@ def mechanism_constraints(mechanism: Mechanism, constraints: Constraints) -> Mec
         parts.append(_TransmissionLimit(tuple(dyads), constraints.transmission).misses)
     if constraints.length_ratio is not None:
         ends = link_ends(mechanism)
-        outputs |= {
-            f"box_{p}_{axis}": f"position_{p}_{axis}" for two in ends.values() for p in two for axis in "xy"
-        }
+        boxed |= dict.fromkeys(point for two in ends.values() for point in two)
         parts.append(_LengthLimit(tuple(ends.values()), math.log(constraints.length_ratio)).misses)
 
-    def misses(moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array]:
-        rows = [part(moved, values, by) for part in parts]
+    outputs |= {box_output(p, axis): identifier("position", p, axis) for p in boxed for axis in "xy"}
+
+    def misses(values: Numbers, by: Numbers, free: int) -> tuple[Array, Array]:
+        rows = [part(values, by, free) for part in parts]
         missed = np.concatenate([row for row, _slopes in rows] or [np.empty(0)])
-        slopes = np.concatenate([slope for _row, slope in rows] or [np.empty((0, len(moved.free)))])
+        slopes = np.concatenate([slope for _row, slope in rows] or [np.empty((0, free))])
         return missed, slopes
 
-    return MechanismConstraints(outputs, misses)
+    return MechanismConstraints(outputs, misses, tuple(boxed))
+
+
+def box_output(point: str, axis: str) -> str:
+    """Name among the outputs of a coordinate of a point where the mechanism stands."""
+    return f"box_{_spell(point)}_{axis}"
+
+
+def _spell(name: str) -> str:
+    """A name of a point or a link in the letters that the name of an output may have."""
+    return name.encode().hex()
 
 
 def link_ends(mechanism: Mechanism) -> dict[str, tuple[str, str]]:
@@ -105,11 +135,13 @@ class _BoxLimit:
     points: tuple[str, ...]
     size: Sequence[float]
 
-    def misses(self, moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array]:
+    def misses(self, values: Numbers, by: Numbers, free: int) -> tuple[Array, Array]:
         """Two misses (2,) with derivatives (2, free): those of the two points that stand out farthest."""
-        rows, slopes = np.zeros(2), np.zeros((2, len(moved.free)))
+        rows, slopes = np.zeros(2), np.zeros((2, free))
         for k, axis in enumerate("xy"):
-            ends = [_greatest(sign, values, by, [f"box_{p}_{axis}" for p in self.points]) for sign in (1, -1)]
+            ends = [
+                _greatest(sign, values, by, [box_output(p, axis) for p in self.points]) for sign in (1, -1)
+            ]
             excess = (ends[0][0] + ends[1][0]) / self.size[k] - 1.0 + BOX_MARGIN
             if excess > 0:
                 rows[k], slopes[k] = excess, (ends[0][1] + ends[1][1]) / self.size[k]
@@ -137,27 +169,53 @@ def _summit(places: Array, changes: Array, k: int) -> tuple[float, Array]:
 
 
 @dataclass(frozen=True)
+class _PivotLimit:
+    """Fixed hinges of a placed mechanism: how far they stand outside a box, in sizes of the targets."""
+
+    points: tuple[str, ...]
+    box: Sequence[tuple[float, float] | None]
+    size: float
+
+    def misses(self, values: Numbers, by: Numbers, free: int) -> tuple[Array, Array]:
+        """One miss a point, axis and end that is given, with its derivatives; a fixed point stands still."""
+        rows, slopes = [], []
+        for axis, ends in zip("xy", self.box, strict=True):
+            if ends is None:
+                continue
+            margin = min(PIVOT_MARGIN, 0.25 * (ends[1] - ends[0]) / self.size)
+            for point in self.points:
+                place, change = values[box_output(point, axis)][0], by[box_output(point, axis)][0]
+                for sign, end in ((1.0, ends[1]), (-1.0, ends[0])):
+                    excess = sign * (place - end) / self.size + margin
+                    rows.append(max(excess, 0.0))
+                    slopes.append(sign * change / self.size if excess > 0 else np.zeros(free))
+        return np.array(rows), np.array(slopes)
+
+
+@dataclass(frozen=True)
 class _LengthLimit:
     """The logarithm of the longest to the shortest link, less what is allowed."""
 
     ends: tuple[tuple[str, str], ...]
     ratio: float
 
-    def misses(self, moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array]:
+    def misses(self, values: Numbers, by: Numbers, free: int) -> tuple[Array, Array]:
         """One miss (1,) with derivatives (1, free); a link is as long at the first sample as at any other."""
         logs, slopes = [], []
         for first, second in self.ends:
             apart = np.array(
-                [values[f"box_{second}_{axis}"][0] - values[f"box_{first}_{axis}"][0] for axis in "xy"]
+                [values[box_output(second, axis)][0] - values[box_output(first, axis)][0] for axis in "xy"]
             )
-            change = np.array([by[f"box_{second}_{axis}"][0] - by[f"box_{first}_{axis}"][0] for axis in "xy"])
+            change = np.array(
+                [by[box_output(second, axis)][0] - by[box_output(first, axis)][0] for axis in "xy"]
+            )
             square = max(float(apart @ apart), 1e-300)
             logs.append(0.5 * math.log(square))
             slopes.append(apart @ change / square)
         longest, shortest = int(np.argmax(logs)), int(np.argmin(logs))
         excess = logs[longest] - logs[shortest] - self.ratio + MARGIN
         if excess <= 0:
-            return np.zeros(1), np.zeros((1, len(moved.free)))
+            return np.zeros(1), np.zeros((1, free))
         return np.array([excess]), (slopes[longest] - slopes[shortest])[None]
 
 
@@ -168,7 +226,7 @@ class _TransmissionLimit:
     dyads: tuple[tuple[Line, Line], ...]
     least: float
 
-    def misses(self, moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array]:
+    def misses(self, values: Numbers, by: Numbers, free: int) -> tuple[Array, Array]:
         """One row a sample and dyad, in units of which all samples of a dyad count as one."""
         rows, slopes = [], []
         for one, other in self.dyads:
@@ -201,11 +259,14 @@ def _dyads(mechanism: Mechanism, outputs: dict[str, str]) -> Iterator[tuple[Line
 
     def guide(on: str, name: str) -> Line:
         if on != FRAME:
-            outputs[f"line_{on}"] = f"angle_{on}"
-        return _RailLine(along[name], "" if on == FRAME else f"line_{on}")
+            outputs[f"line_{_spell(on)}"] = identifier("angle", on)
+        return _RailLine(along[name], "" if on == FRAME else f"line_{_spell(on)}")
 
     def arm(centre: str, point: str, turn: complex) -> Line:
-        outputs.update({f"line_{p}_{axis}": f"position_{p}_{axis}" for p in (centre, point) for axis in "xy"})
+        ends = (centre, point)
+        outputs.update(
+            {f"line_{_spell(p)}_{axis}": identifier("position", p, axis) for p in ends for axis in "xy"}
+        )
         return _ArmLine(centre, point, turn)
 
     for group in prepared.structure.groups:
@@ -235,7 +296,7 @@ class _ArmLine:
     def __call__(self, values: Numbers, by: Numbers) -> tuple[Complex, Complex]:
         """Complex directions and their derivatives."""
         ends = [
-            numbers[f"line_{point}_x"] + 1j * numbers[f"line_{point}_y"]
+            numbers[f"line_{_spell(point)}_x"] + 1j * numbers[f"line_{_spell(point)}_y"]
             for numbers in (values, by)
             for point in (self.end, self.start)
         ]
@@ -257,3 +318,80 @@ class _RailLine:
             return np.full(size, self.along), np.zeros((size, by[sample].shape[-1]), dtype=np.complex128)
         direction = self.along * np.exp(1j * values[self.angle])
         return direction, 1j * direction[:, None] * by[self.angle]
+
+
+@dataclass(frozen=True)
+class BrokenConstraint:
+    """A constraint that a mechanism does not keep.
+
+    Attributes
+    ----------
+    name : its key
+    own, limit : what the mechanism has, and what is allowed; None of order and crank
+    unit : of both, as it is read
+    """
+
+    name: str
+    own: float | None = None
+    limit: float | None = None
+    unit: str = ""
+
+    def sentence(self, error: float | None) -> str:
+        """What is broken and by how much; the root mean square error [m] of the targets, where they are points."""
+        if self.own is None or self.limit is None:
+            what = _("the nearest breaks {what}").format(what=self.name)
+        else:
+            what = {
+                "m": _("the nearest breaks {what}: {own:.5g} m, where {limit:.5g} m is the limit"),
+                "deg": _("the nearest breaks {what}: {own:.5g} deg, where {limit:.5g} deg is the limit"),
+            }.get(self.unit, _("the nearest breaks {what}: {own:.5g}, where {limit:.5g} is the limit"))
+            what = what.format(what=self.name, own=self.own, limit=self.limit)
+        if error is None:
+            return what
+        return what + "; " + _("it misses the targets by {miss:.3g} m").format(miss=error)
+
+
+def broken_constraints(
+    mechanism: Mechanism,
+    constraints: Constraints,
+    size: tuple[float, float],
+    transmission: float,
+    branch: bool,
+    order: bool,
+) -> Iterator[BrokenConstraint]:
+    """What a mechanism does not keep, by its whole motion.
+
+    Parameters
+    ----------
+    size : width and height [m] of the box around all positions
+    transmission : least transmission angle [rad]; NaN where there is none
+    branch, order : its defects
+    """
+    if branch and (constraints.order or constraints.crank is not None):
+        yield BrokenConstraint("crank" if constraints.crank is not None else "order")
+    if order and constraints.order:
+        yield BrokenConstraint("order")
+    least = constraints.transmission
+    if least is not None and not transmission >= least - KEPT:
+        yield BrokenConstraint("transmission", math.degrees(transmission), math.degrees(least), "deg")
+    if constraints.size is not None:
+        for own, most in zip(size, constraints.size, strict=True):
+            if own > most * (1 + KEPT):
+                yield BrokenConstraint("size", own, most, "m")
+    for axis, box in enumerate((constraints.pivots.x, constraints.pivots.y)):
+        if box is None:
+            continue
+        places = np.array(list(mechanism.frame.points.values()), dtype=np.float64)[:, axis].tolist()
+        for own, limit, sign in ((min(places), box[0], -1.0), (max(places), box[1], 1.0)):
+            if sign * (own - limit) > KEPT:
+                yield BrokenConstraint(f"pivots.{'xy'[axis]}", own, limit, "m")
+    if constraints.length_ratio is not None:
+        lengths = list(_lengths(mechanism))
+        if max(lengths) > constraints.length_ratio * min(lengths) * (1 + KEPT):
+            yield BrokenConstraint("length_ratio", max(lengths) / min(lengths), constraints.length_ratio)
+
+
+def _lengths(mechanism: Mechanism) -> Iterator[float]:
+    for link, (first, second) in link_ends(mechanism).items():
+        at = mechanism.links[link].coordinates
+        yield math.dist(at[first][:2], at[second][:2])

@@ -7,14 +7,15 @@ sought in its other tables.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, PlainValidator, model_validator
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, mark
 from centrode.model.description_files import DescriptionFiles
 from centrode.model.files import mechanism_from
 from centrode.model.mechanism import Mechanism
@@ -302,6 +303,8 @@ class Synthesis(DescriptionPart):
         if self.timing != "free" and not timed:
             what = _("timing needs an angle of the drive in every row")
             raise Problem(what, _('add a column, or write timing = "free"'), ("targets",))
+        if self.kind != "function" and self.timing != "free" and self.constraints.order:
+            _check_order([row[-1] for row in rows])
         return rows
 
 
@@ -341,6 +344,14 @@ def _check_keys(wanted: Synthesis) -> None:
         if foreign or unused:
             what = _('"{key}" means nothing to kind = "{kind}"').format(key=key, kind=wanted.kind)
             raise Problem(what, _("remove it"), (key,))
+    _check_keys_of_file(wanted)
+    crank = wanted.constraints.crank
+    if crank not in (None, "OA") and wanted.topology in (*FOUR_BARS, *SPHERICAL):
+        what = _("the crank of this topology is {name}").format(name="OA")
+        raise Problem(what, _('write crank = "OA", or remove it'), ("constraints", "crank"))
+    if wanted.closed and wanted.timing != "free":
+        what = _("where angles of the drive are given, they say how the path is passed")
+        raise Problem(what, _("remove closed"), ("closed",))
     pivots = wanted.constraints.pivots
     if wanted.topology not in SPHERICAL and (pivots.longitude is not None or pivots.latitude is not None):
         what = _("in the plane fixed hinges have no longitude and latitude")
@@ -359,6 +370,35 @@ def _check_keys(wanted: Synthesis) -> None:
     if wanted.trade_off is not None and wanted.topology not in FOUR_BARS:
         what = _("a trade-off is found of four-bar linkages in the plane")
         raise Problem(what, _("remove it"), ("trade_off",))
+
+
+OF_TOPOLOGIES: Mapping[Kind, tuple[str, ...]] = {
+    "path": (),
+    "motion": ("hinges",),
+    "function": ("exact", "length", "formula", "x", "swings"),
+    "strokes": ("transmission", "length", "targets"),
+}
+"""Keys that mean nothing to a mechanism of a file."""
+INSTEAD = {
+    "hinges": mark("give ranges of the frame's points below [synthesis.free], or bound them by pivots"),
+    "exact": mark("remove it: all targets are met as nearly as possible"),
+    "length": mark("write it into the mechanism, or bound it below [synthesis.free]"),
+    "formula": mark("give targets: values of the drive, and of the output"),
+    "x": mark("give targets: values of the drive, and of the output"),
+    "swings": mark("give targets: values of the drive, and of the output"),
+    "transmission": mark("write it below [synthesis.constraints]"),
+    "targets": mark("remove it"),
+}
+
+
+def _check_keys_of_file(wanted: Synthesis) -> None:
+    """Refuse keys that belong to built-in topologies where the file describes the mechanism."""
+    if wanted.topology is not None:
+        return
+    for key in OF_TOPOLOGIES[wanted.kind]:
+        if key in wanted.model_fields_set:
+            what = _('"{key}" belongs to built-in topologies, not to a mechanism of a file').format(key=key)
+            raise Problem(what, _(INSTEAD[key]), (key,))
 
 
 FEWEST = {"path": 3, "function": 3, "motion": 2}
@@ -392,6 +432,16 @@ def _check_targets(kind: str, rows: Rows) -> None:
             if angles.count(value) > 1:
                 what = _("an angle of the crank has two values")
                 raise Problem(what, _("remove one of them"), at)
+
+
+def _check_order(angles: Sequence[float]) -> None:
+    """Refuse angles of the drive that neither rise nor fall from target to target over at most a turn."""
+    for sense in (1.0, -1.0):
+        steps = [(sense * (after - before)) % (2 * math.pi) for before, after in pairwise(angles)]
+        if sum(steps) <= 2 * math.pi + 1e-9 and all(step > 0 for step in steps[:-1]):
+            return
+    what = _("the angles of the drive neither rise nor fall from row to row over one turn")
+    raise Problem(what, _("sort the rows, or write order = false"), ("targets",))
 
 
 def _check_strokes(wanted: Synthesis) -> None:

@@ -113,6 +113,13 @@ def _course(results: CamSeriesResults, *, shown: bool = True) -> Table:
 
 def _chapter(results: CamSeriesResults) -> Chapter:
     """The equation, the recursions and the series in the letters of the paper."""
+    recursion = _exponential() if results.dataset.attrs["recursion"] == "exponential" else _general()
+    blocks = (*_series(), *recursion, _coefficients(results), _course(results, shown=False))
+    return Chapter(Sentence("Power series of the path"), (Section(NOTHING, blocks),))
+
+
+def _series() -> tuple[Block, ...]:
+    """The equation of the path, its solution as series, and the recursion of the cosine."""
     equation = Formula((("K eta'' - K' eta' + K eta + K' lambda", "0"), ("lambda", "sqrt(1 - eta^2)")))
     series = Formula(
         (
@@ -131,7 +138,7 @@ def _chapter(results: CamSeriesResults) -> Chapter:
             ),
         )
     )
-    blocks: list[Block] = [
+    return (
         Paragraph(
             Sentence(
                 "With $eta = sin gamma$ and $lambda = cos gamma$ the path of the roller's centre follows from"
@@ -149,42 +156,44 @@ def _chapter(results: CamSeriesResults) -> Chapter:
             )
         ),
         cosines,
-    ]
-    if results.dataset.attrs["recursion"] == "exponential":
-        blocks += [
-            Paragraph(
-                Sentence(
-                    "Of the curvature $K = k_0 e^(k_1 phi)$ the equation becomes autonomous, and the paper's formula "
-                    "({number}) gives",
-                    number=Number(34),
-                )
-            ),
-            Formula(
+    )
+
+
+def _exponential() -> tuple[Block, ...]:
+    """The recursion of the sine where the curvature is an exponential function."""
+    return (
+        Paragraph(
+            Sentence(
+                "Of the curvature $K = k_0 e^(k_1 phi)$ the equation becomes autonomous, and the paper's formula "
+                "({number}) gives",
+                number=Number(34),
+            )
+        ),
+        Formula(
+            (
+                ("eta'' - k_1 eta' + eta + k_1 sqrt(1 - eta^2)", "0"),
                 (
-                    ("eta'' - k_1 eta' + eta + k_1 sqrt(1 - eta^2)", "0"),
-                    (
-                        "a_(m + 2)",
-                        "frac(k_1 ((m + 1) a_(m + 1) - b_m) - a_m, (m + 2)(m + 1))",
-                    ),
-                )
-            ),
-        ]
-    else:
-        blocks += [
-            Paragraph(
-                Sentence(
-                    "With $K = sum k_i phi^i$ and $rho = sum r_i phi^i$ the coefficients $a_(n + 1)$ are"
-                )
-            ),
-            Formula(
+                    "a_(m + 2)",
+                    "frac(k_1 ((m + 1) a_(m + 1) - b_m) - a_m, (m + 2)(m + 1))",
+                ),
+            )
+        ),
+    )
+
+
+def _general() -> tuple[Block, ...]:
+    """The recursions of sine and radius for a curvature with any power series."""
+    return (
+        Paragraph(
+            Sentence("With $K = sum k_i phi^i$ and $rho = sum r_i phi^i$ the coefficients $a_(n + 1)$ are")
+        ),
+        Formula(
+            (
+                ("(n + 1) a_(n + 1)", "b_n - sum_(i = 0)^n r_i k_(n - i)"),
                 (
-                    ("(n + 1) a_(n + 1)", "b_n - sum_(i = 0)^n r_i k_(n - i)"),
-                    (
-                        "(n + 1) b_0 r_(n + 1)",
-                        "sum_(i = 0)^n r_i a_(n - i) - sum_(i = 1)^n (n + 1 - i) b_i r_(n + 1 - i)",
-                    ),
-                )
-            ),
-        ]
-    blocks += [_coefficients(results), _course(results, shown=False)]
-    return Chapter(Sentence("Power series of the path"), (Section(NOTHING, tuple(blocks)),))
+                    "(n + 1) b_0 r_(n + 1)",
+                    "sum_(i = 0)^n r_i a_(n - i) - sum_(i = 1)^n (n + 1 - i) b_i r_(n + 1 - i)",
+                ),
+            )
+        ),
+    )

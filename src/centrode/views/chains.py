@@ -18,10 +18,9 @@ from centrode.sheets.texts import NOTHING, Joined, Name, Number, Sentence, Text
 from centrode.structure.assur import roman
 
 if TYPE_CHECKING:
-    from centrode.chains.assur_schemes import AssurScheme
+    from centrode.chains.assur_schemes import AssurList, AssurScheme
     from centrode.chains.identification import ChainInversion, ChainOfMechanism
-    from centrode.chains.kinematic_chains import KinematicChain
-    from centrode.chains.lists import AssurList, ChainList
+    from centrode.chains.kinematic_chains import ChainList, KinematicChain
 
 Outlines: TypeAlias = tuple[tuple[int, ...], ...]
 CellOf: TypeAlias = Callable[[int], tuple[NDArray[np.float64], Outlines, tuple[int, ...]]]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.dynamics.equilibria.critical_values import BRANCH_POINT, FOLD, HOPF
+from centrode.dynamics.equilibria.critical_values import BRANCH_POINT, FOLD, HOPF, KINK
 from centrode.dynamics.equilibria.critical_values import KINDS as CRITICAL_KINDS
 from centrode.dynamics.equilibria.small_motions import ASYMPTOTIC, NEUTRAL, STABILITIES, STABLE, UNSTABLE
 from centrode.sheets.linkages import MechanismPicture
@@ -53,6 +53,7 @@ CRITICAL: dict[str, Sentence] = {
     FOLD: Sentence("fold: an equilibrium is lost"),
     BRANCH_POINT: Sentence("branch point: other equilibria branch off"),
     HOPF: Sentence("Hopf point: oscillations begin to grow"),
+    KINK: Sentence("kink: a stop closes or opens, or a controller reaches its bound"),
 }
 
 
@@ -117,6 +118,7 @@ def _facts(results: EquilibriumResults) -> Iterator[Fact]:
         more = Number(count - SHOWN, digits="d")
         yield Fact(NOTHING, Sentence("and {more} more, which the files have", more=more))
     yield from _held_facts(results)
+    yield from _controller_facts(found)
     yield from _friction_facts(found)
     yield from _critical_facts(found)
 
@@ -158,6 +160,18 @@ def _held_facts(results: EquilibriumResults) -> Iterator[Fact]:
             yield Fact(Sentence("{drive} is held by", drive=Name(str(name))), numbers)
 
 
+def _controller_facts(found: xr.Dataset) -> Iterator[Fact]:
+    """What controllers give at each equilibrium."""
+    if "controller_output" not in found:
+        return
+    units = coordinate_units(found["controller_output"])
+    for column, name in enumerate(found["controller"].values):
+        values = found["controller_output"].values[:SHOWN, column]
+        if len(values):
+            numbers = Joined([Number(float(value), units[column], "+.6g") for value in values], "; ")
+            yield Fact(Sentence("{controller} gives", controller=Name(str(name))), numbers)
+
+
 def _friction_facts(found: xr.Dataset) -> Iterator[Fact]:
     if "friction_reach" in found:
         units = coordinate_units(found["friction_reach"])
@@ -170,19 +184,48 @@ def _friction_facts(found: xr.Dataset) -> Iterator[Fact]:
             yield Fact(label, Joined(parts[:4]))
     if "friction_band" not in found:
         return
+    yield from _share_facts(found)
     if found["friction_holds_everywhere"].values.any():
-        yield Fact(Sentence("friction holds"), Sentence("in every position"))
+        yield Fact(
+            Sentence("friction holds"), Joined((Sentence("in every position"), *_slip_texts(found, 0)), "; ")
+        )
         return
     units = coordinate_units(found["friction_band"])
-    for row in found["friction_band"].values:
-        first, last = sorted(row[:, 0].tolist())
+    told = _told_coordinate(found)
+    for k, row in enumerate(found["friction_band"].values):
+        first, last = sorted(row[:, told].tolist())
         text = Sentence(
             "{name} from {first} to {last}",
-            name=Name(str(found["coordinate"].values[0])),
-            first=Number(first, units[0], degrees_too=True),
-            last=Number(last, units[0], degrees_too=True),
+            name=Name(str(found["coordinate"].values[told])),
+            first=Number(first, units[told], degrees_too=True),
+            last=Number(last, units[told], degrees_too=True),
         )
-        yield Fact(Sentence("friction holds"), text)
+        yield Fact(Sentence("friction holds"), Joined((text, *_slip_texts(found, k)), "; "))
+
+
+def _told_coordinate(found: xr.Dataset) -> int:
+    """Number of the coordinate that tells a position: that of a drive, else the first."""
+    names = [str(name) for name in found["coordinate"].values]
+    return next((names.index(str(name)) for name in found["drive"].values if str(name) in names), 0)
+
+
+def _share_facts(found: xr.Dataset) -> Iterator[Fact]:
+    """What part of the friction the initial position takes."""
+    share = float(found["friction_share"].values)
+    if not np.isfinite(share):
+        return
+    percent = Number(100.0 * share, "%", ".6g")
+    yield Fact(
+        Sentence("the initial position takes"),
+        Sentence("{share} of the friction: it stays", share=percent)
+        if share <= 1.0
+        else Sentence("{share} of the friction: it moves", share=percent),
+    )
+
+
+def _slip_texts(found: xr.Dataset, band: int) -> Iterator[Text]:
+    if found["friction_feeds_itself"].values[band]:
+        yield Sentence("friction feeds itself there, and may slip as well (Painlevé)")
 
 
 def _critical_facts(found: xr.Dataset) -> Iterator[Fact]:
@@ -357,11 +400,17 @@ def _chapter(results: EquilibriumResults) -> Chapter:
         )
     )
     pictures = tuple(Illustration(name) for name, _make in _pictures(results))
-    tables: list[Table] = [_table(found)]
+    tables: list[Table] = [_table(found)] if found.sizes["equilibrium"] else []
     if found.attrs["vary"]:
         tables.append(_critical_table(found))
+    more: tuple[Paragraph, ...] = ()
+    if "controller_output" in found:
+        words = Sentence(
+            "States of controllers are further unknowns: at rest their rates vanish, and each adds an eigenvalue."
+        )
+        more = (Paragraph(words),)
     sections = (
-        Section(NOTHING, (Paragraph(text), equations, FactTable(tuple(_facts(results))))),
+        Section(NOTHING, (Paragraph(text), equations, *more, FactTable(tuple(_facts(results))))),
         Section(NOTHING, tuple(tables)),
         Section(NOTHING, pictures),
     )

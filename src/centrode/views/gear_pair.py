@@ -154,6 +154,12 @@ def _second(pair: PairGeometry) -> Sentence:
 
 
 def _facts(results: GearPairResults) -> Iterator[Fact]:
+    yield from _facts_of_shifts(results)
+    yield from _facts_of_mesh(results)
+    yield from _facts_of_loading(results)
+
+
+def _facts_of_shifts(results: GearPairResults) -> Iterator[Fact]:
     pair, described = results.geometry, results.gear_pair
     kinds = {
         "external": Sentence("external"),
@@ -174,6 +180,10 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
     yield Fact(Sentence("shift coefficients"), shifts)
     if results.recommendation is not None:
         yield Fact(Sentence("recommendation for"), recommendation_text(results.recommendation, described))
+
+
+def _facts_of_mesh(results: GearPairResults) -> Iterator[Fact]:
+    pair = results.geometry
     yield Fact(Sentence("working pressure angle"), Number(pair.working_angle, "rad"))
     if pair.kind != "rack":
         distance = Sentence(
@@ -203,6 +213,11 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
     )
     sliding = Sentence("pinion {pinion}, {second} {wheel}", pinion=pinion, wheel=wheel, second=_second(pair))
     yield Fact(Sentence("greatest specific sliding"), sliding)
+
+
+def _facts_of_loading(results: GearPairResults) -> Iterator[Fact]:
+    """The speed of the second wheel and the forces between the teeth, where the description gives speed and moment."""
+    pair = results.geometry
     if results.output_speed is not None:
         unit = "m/s" if pair.kind == "rack" else "rad/s"
         yield Fact(

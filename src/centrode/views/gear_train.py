@@ -24,8 +24,8 @@ from centrode.views.gear_train_chapters import (
 )
 
 if TYPE_CHECKING:
-    from centrode.gears.any_train import AnyTrain
     from centrode.gears.train_results import GearTrainResults
+    from centrode.gears.train_search import AnyTrain
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 

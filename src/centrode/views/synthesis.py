@@ -285,7 +285,10 @@ def _map(results: SynthesisResults, title: Title) -> CurveMap:
 
 
 def _skeleton(answer: Answer) -> Iterator[Array]:
-    """Links of a four-bar linkage where the point is at the first target, by the angle of the crank."""
+    """Links where the first target is met: those of a four-bar linkage by the angle of the crank."""
+    if answer.links:
+        yield from map(_planar, answer.links)
+        return
     mechanism = answer.mechanism
     links = mechanism.links
     if mechanism.space != "plane" or set(links) != {"OA", "AB", "DB"} or not len(answer.drive):

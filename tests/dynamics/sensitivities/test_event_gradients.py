@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from central_differences import STEP, directions, moved_along
 from centrode.dynamics.forward_dynamics.trajectory import Trajectory
 from centrode.dynamics.sensitivities.motion_gradients import MotionGradients, motion_gradients
 from centrode.dynamics.simulation.multibody_motion import multibody_setting
@@ -212,31 +213,28 @@ def test_derivatives_are_those_of_differences(
     described = mechanism.model_copy(update={"simulation": tight})
     found = gradients_of(described, paths, times)
     assert kinds <= {one.event.kind for one in found.motion.events}
-    for k, path in enumerate(paths):
-        value = ct.value_at(described, path)
-        step = 2e-5 * abs(value)
-        moved = {
-            j: course_of(ct.with_value(described, path, value + j * step), times) for j in (-2, -1, 1, 2)
-        }
+    for along in directions(described, paths):
+        moved = {j: course_of(moved_along(described, paths, j * along), times) for j in (-2, -1, 1, 2)}
         assert len({len(one.events) for one in moved.values()}) == 1
 
-        def differences(of: object, moved=moved, step=step) -> np.ndarray:
+        def differences(of: object, moved=moved) -> np.ndarray:
             one, two = (of(moved[j]) - of(moved[-j]) for j in (1, 2))
-            return (8 * one - two) / (12 * step)
+            return (8 * one - two) / 12
 
         for own, of in (
-            (found.motion.coordinate_changes[:, k], lambda course: course.coordinates),
-            (found.motion.speed_changes[:, k], lambda course: course.speeds),
-            (found.position[:, k], lambda course: course.places),
-            (found.velocity[:, k], lambda course: course.velocities),
+            (found.motion.coordinate_changes, lambda course: course.coordinates),
+            (found.motion.speed_changes, lambda course: course.speeds),
+            (found.position, lambda course: course.places),
+            (found.velocity, lambda course: course.velocities),
         ):
-            difference = differences(of)
+            difference = differences(of) / STEP
             scale = max(float(np.abs(difference).max()), 1e-2)
-            assert np.abs(difference - own).max() < 1e-8 * scale, path
+            expected = np.tensordot(np.moveaxis(own, 1, -1), along / STEP, 1)
+            assert np.abs(difference - expected).max() < 1e-8 * scale, along
         # instants of fast events; those of ever smaller impacts are known to as much as their rounding over their speed
-        instants = differences(lambda course: np.array([event.time for event in course.events]))[:5]
-        own_times = np.array([one.time_changes[k] for one in found.motion.events])[:5]
-        assert np.abs(instants - own_times).max() < 5e-8 * max(float(np.abs(instants).max()), 1e-2), path
+        instants = differences(lambda course: np.array([event.time for event in course.events]))[:5] / STEP
+        own_times = np.array([one.time_changes for one in found.motion.events])[:5] @ along / STEP
+        assert np.abs(instants - own_times).max() < 5e-8 * max(float(np.abs(instants).max()), 1e-2), along
 
 
 def test_what_has_no_derivative_is_named() -> None:

@@ -140,6 +140,69 @@ def test_a_block_on_a_belt_has_the_period_of_its_closed_form_and_forgets_departu
     assert found.stable
 
 
+def shaken_block(start: float) -> ct.Mechanism:
+    """A block on a table that a crank shakes; it sticks during about half of a period."""
+    return ct.Mechanism(
+        frame={"points": {"O": [0, 0], "Q": [1, 0]}},
+        links={
+            "OA": {"length": 0.1, "mass": 0.1, "shape": "rod"},
+            "table": {"points": {"T": [0, 0]}, "mass": 1},
+            "block": {"points": {"B": [0, 0]}, "mass": 1},
+        },
+        guides=[
+            {"point": "T", "on": "frame", "through": "Q", "direction": [1, 0], "link": "table"},
+            {"point": "A", "on": "table", "through": [0, 0], "direction": [0, 1]},
+            {"point": "B", "on": "table", "through": [0, 0], "direction": [1, 0], "link": "block"},
+        ],
+        drives=[{"link": "OA", "start": start, "speed": 8.0}, {"guide": "B", "start": 0}],
+        loads=[
+            {"kind": "friction", "guide": "B", "value": 5.5},
+            {"kind": "spring", "points": ["B", "T"], "stiffness": 4, "free_length": 0},
+        ],
+        simulation={"keeps": ["OA"], "duration": 4},
+    )
+
+
+def test_a_regime_is_the_same_whether_something_sticks_where_its_period_begins_or_not() -> None:
+    slips, sticks = regime_of(shaken_block(0.5), 4.0), regime_of(shaken_block(2.2), 4.0)
+    for found, held in ((slips, False), (sticks, True)):
+        run = found.free.integrate(found.start, found.period, 1e-11, at=[1e-6, found.period])
+        assert bool(run.contact_modes[0, 0]) is held
+        apart = run.coordinates[1] - found.start.coordinates - 2 * math.pi * found.turns
+        assert np.abs(apart).max() < 1e-8
+    assert np.allclose(slips.multipliers, sticks.multipliers, rtol=0, atol=1e-6)
+
+
+def test_what_is_held_all_the_time_does_not_hide_a_regime() -> None:
+    # the block on a belt of the test above, beside an arm that rests on a stop for good
+    mass, stiffness, static, kinetic, belt = 1.0, 40.0, 5.0, 3.0, 0.2
+    omega, a = math.sqrt(stiffness / mass), (static - kinetic) / stiffness
+    period = 2 * a / belt + 2 / omega * (math.pi - math.atan(a * omega / belt))
+    both = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0], "W": [-1, 0], "H": [3, 0]}},
+        links={
+            "block": {"points": {"P": [0, 0]}, "mass": mass},
+            "arm": {"points": {"H": [0, 0], "E": [1, 0]}, "mass": 1, "shape": "rod", "angle": -0.3},
+        },
+        guides=[{"point": "P", "on": "frame", "through": "O", "direction": [1, 0], "link": "block"}],
+        drives=[{"guide": "P", "start": 0}],
+        loads=[
+            {"kind": "spring", "points": ["W", "P"], "stiffness": stiffness, "free_length": 1},
+            {
+                "kind": "friction",
+                "guide": "P",
+                "value": kinetic,
+                "static": static,
+                "surface_speed": belt,
+            },
+        ],
+        stops=[{"link": "arm", "least": -0.3}],
+        simulation={"duration": 8.0, "equations": "multibody"},
+    )
+    assert math.isclose(regime_of(both, 8.0).period, period, rel_tol=1e-9)
+
+
 def test_a_rod_that_swings_back_has_no_regime() -> None:
     rod = ct.Mechanism(
         gravity=[0, -9.81],

@@ -33,12 +33,13 @@ CLEAR = 0.15
 """Impacts slower than this [m/s] may be several of ours, or none: flights shorter than a step are none to the steps."""
 WINDOW = 2e-2
 """Time [s] by which an impact of the time steps may be late; as near to the end one way alone may have it."""
-USUAL, FINER = (1, 2, 4), (16, 64)
+USUAL, FINER = (1, 2, 4), (16, 64, 256, 1024)
 """Steps over those of the longest kind: for all cases, and one after the other where these do not decide.
 
 Static friction of a step has an impulse of at most the static force times the step. It stops what an impact sets in
 motion with less momentum than that impulse has over the load's, although kinetic friction would not: the step
-has to be shorter. Near a change point it has to be short against the time in which the mechanism passes."""
+has to be shorter. Near a change point or a limit it has to be short against the time in which the mechanism passes:
+longer ones lose the energy of the link that turns fast there."""
 
 
 def drawn(random: np.random.Generator) -> tuple[str, Parts]:
@@ -275,10 +276,10 @@ CAMPAIGN = Campaign(
         "links, the static one in half of all cases greater. The motion by events is compared with Moreau's time "
         "steps in absolute coordinates (`tools/campaigns/contacts/time_steps.py`), which seek no event and share no "
         "formula with the program: with half and a quarter of the step they come nearer at their first order. Where "
-        "they do not, or stay apart, or rest for another time, a sixteenth of the step decides, then a 64th. Steps can "
-        "be too long in two ways: the impulse of static friction in a step stops a link that an impact has set in "
-        "motion slowly, although kinetic friction would let it go on; and near a change point a link turns fast for "
-        "no more than a few steps. Each "
+        "they do not, or stay apart, or rest for another time, a sixteenth of the step decides, then a 64th, a 256th "
+        "and a 1024th. Steps can be too long in two ways: the impulse of static friction in a step stops a link that "
+        "an impact has set in motion slowly, although kinetic friction would let it go on; and near a change point or "
+        "a limit a link turns fast for no more than a few steps, which lose its energy. Each "
         f"impact faster than {CLEAR:g} m/s of either has one of the other within {WINDOW:g} s, but for those as near "
         "to the end; slower ones are merged by steps that are longer than their flights."
     ),

@@ -143,7 +143,7 @@ export class Chart {
     const { data, svg, wide } = this;
     if (!data) return;
     svg.replaceChildren();
-    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), long = 7 * symbol.length > 0.3 * wide;
+    const symbol = [data.x.label, data.x.unit].filter((one) => one && one !== "1").join(", "), long = 7 * symbol.length > 0.12 * wide;
     // a long name of the abscissa stands below its numbers
     const TALL = TALLEST + (long ? 15 : 0), LOWER = LOWEST + (long ? 15 : 0), named = long ? 0 : 8 * symbol.length + 22;
     svg.setAttribute("viewBox", `0 0 ${wide} ${TALL}`);

@@ -6,7 +6,7 @@ import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
 import { unpack } from "./share";
-import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, options, refused, savedAs, scene, takeTyped, tell, text, unsaved } from "./state";
+import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, mode, options, refused, savedAs, scene, takeTyped, tell, text, unsaved } from "./state";
 import { token } from "./token";
 import { language, say, sentences, spelled, unitText } from "./words";
 
@@ -46,7 +46,11 @@ const take = (next: string, name: string | null, onDisk: boolean): void => caref
   load(next, name, onDisk);
   dialog.value = "";
 });
-export const fresh = (): void => take(hello.value?.blank ?? BLANK, null, false);
+export const fresh = (): void => careful(() => {
+  load(hello.value?.blank ?? BLANK, null, false);
+  mode.value = "draw";
+  dialog.value = "";
+});
 
 // --- opening -----------------------------------------------------------------------------------------------------------
 const filter = signal("");

@@ -76,7 +76,7 @@ export class TextEditor {
     const found: Diagnostic[] = problems.map((problem) => {
       const line = doc.line(Math.min(doc.lines, Math.max(1, problem.line ?? 1)));
       const from = Math.min(line.to, line.from + Math.max(0, (problem.column ?? 1) - 1));
-      return { from, to: Math.max(from, line.to), severity: "error", message: [problem.message, problem.repair].filter(Boolean).join(" ") };
+      return { from, to: Math.max(from, line.to), severity: "error", message: problem.message };
     });
     this.view.dispatch(setDiagnostics(this.view.state, found));
   }

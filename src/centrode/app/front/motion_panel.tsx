@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { Chart, type ChartData } from "./chart";
 import { Icon } from "./icons";
 import type { Motion } from "./motion";
-import { motion, place, scene, seek, selection, still, tell } from "./state";
+import { motion, place, readiness, scene, seek, selection, still, tell } from "./state";
 import { fixed, say, sentence, unitText, withUnit } from "./words";
 
 interface Course {
@@ -166,6 +166,7 @@ const numbersOpen = signal(false);
 
 export function MotionPanel() {
   const now = motion.value;
+  if (!now && (readiness.value?.missing.length || readiness.value?.loose.length)) return <Missing message={say("no_motion")} />; // why stands there
   if (!now) return <Missing message={still.value?.message || say("no_motion")} repair={still.value?.repair ?? ""} />;
   return (
     <>

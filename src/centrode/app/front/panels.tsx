@@ -29,13 +29,15 @@ export function Markup({ text, className, label }: { text: string; className: st
     const element = holder.current!;
     element.replaceChildren(...parsed.body.childNodes);
     // What is wider than its place is scrolled, by keyboard too.
-    const watch = new ResizeObserver(() => {
+    const scroll = (): void => {
       const wide = element.scrollWidth > element.clientWidth + 1;
       for (const [name, value] of [["tabindex", "0"], ["role", "region"], ["aria-label", label ?? say("formula")]] as const) {
         if (wide) element.setAttribute(name, value);
         else element.removeAttribute(name);
       }
-    });
+    };
+    scroll();
+    const watch = new ResizeObserver(scroll);
     watch.observe(element);
     return () => watch.disconnect();
   }, [text, label]);
@@ -239,17 +241,20 @@ export const tabs = (): Tab[] => {
   return [...own, ...known.map((one) => ({ name: one.name, title: one.title })).sort((a, b) => there(a) - there(b))];
 };
 
+const others = signal(false); // whether tabs of topics are shown that the description does not have
+
 export function PanelCard() {
   const all = tabs(), now = all.some((one) => one.name === topic.value) ? topic.value : all[0]!.name;
+  const shown = all.filter((one) => others.value || one.name === now || available(one.name) === true), away = all.filter((one) => available(one.name) !== true).length;
   useEffect(() => {
     if (scene.value && topic.value !== now) topic.value = now;
   }, [now, scene.value]);
   const go = (event: KeyboardEvent): void => {
     const by = event.key === "ArrowRight" || event.key === "ArrowDown" ? 1 : event.key === "ArrowLeft" || event.key === "ArrowUp" ? -1 : 0;
-    const at = all.findIndex((one) => one.name === now), next = event.key === "Home" ? 0 : event.key === "End" ? all.length - 1 : (at + by + all.length) % all.length;
+    const at = shown.findIndex((one) => one.name === now), next = event.key === "Home" ? 0 : event.key === "End" ? shown.length - 1 : (at + by + shown.length) % shown.length;
     if (!by && event.key !== "Home" && event.key !== "End") return;
     event.preventDefault();
-    topic.value = all[next]!.name;
+    topic.value = shown[next]!.name;
     (event.currentTarget as HTMLElement).querySelectorAll<HTMLElement>('[role="tab"]')[next]?.focus();
   };
   return (
@@ -258,11 +263,12 @@ export function PanelCard() {
         {all.map((one) => <option value={one.name} disabled={available(one.name) !== true}>{one.title}</option>)}
       </select>
       <div class="tabs" role="tablist" aria-label={say("panels")} onKeyDown={go}>
-        {all.map((one) => (
+        {shown.map((one) => (
           <button type="button" role="tab" id={`tab-${one.name}`} aria-controls="panel" aria-selected={one.name === now} tabindex={one.name === now ? 0 : -1}
             class={available(one.name) === true ? "" : "away"} onClick={() => { topic.value = one.name; }}>{one.title}</button>
         ))}
       </div>
+      {away > 0 && <button type="button" class="others" aria-expanded={others.value} onClick={() => { others.value = !others.value; }}>{say("other_topics", { count: away })}</button>}
       <div role="tabpanel" id="panel" aria-labelledby={`tab-${now}`} tabindex={0} class="panel-body" data-topic={now} data-ready={now === "motion" || now === "cam" || available(now) !== true || panels.value.has(panelKey(now))}>
         {waits.value !== null && <div class="waiting" role="presentation" />}
         {now === "motion" ? <MotionPanel /> : now === "cam" ? <CamPanel /> : <ServerPanel name={now} key={now} />}

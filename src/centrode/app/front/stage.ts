@@ -141,12 +141,19 @@ export class Stage {
   private resize(): void {
     const wide = Math.max(100, this.holder.clientWidth), high = Math.max(100, this.holder.clientHeight);
     if (wide === this.plane.wide && high === this.plane.high) return;
+    const held = this.holdsAll();
     Object.assign(this.plane, { wide, high });
     this.globe.centre = [(wide * U) / 2, (high * U) / 2];
     this.globe.radius = 0.42 * Math.min(wide, high) * U;
     this.svg.setAttribute("viewBox", `0 0 ${wide * U} ${high * U}`);
-    if (this.fits) this.fit();
+    if (this.fits || (held && !this.holdsAll())) this.fit();
     else this.view();
+  }
+
+  // Whether the view holds everything, wherever it moves: then it goes on doing so in a window of another size.
+  private holdsAll(): boolean {
+    const { low, high } = this.extent(), { middle, scale, wide } = this.plane, sides = [wide, this.plane.high];
+    return !this.spherical && low[0]! <= high[0]! && sides.every((side, axis) => Math.max(high[axis]! - middle[axis]!, middle[axis]! - low[axis]!) * scale <= side / 2);
   }
 
   private view(): void {
@@ -155,8 +162,7 @@ export class Stage {
     this.draw();
   }
 
-  fit(): void {
-    this.fits = true;
+  private extent(): { low: number[]; high: number[] } {
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const take = (at: Place | null): void => at?.slice(0, 2).forEach((value, axis) => {
       if (!Number.isFinite(value)) return;
@@ -177,6 +183,12 @@ export class Stage {
       const reach = Math.max(...cam.outline.map((place) => size(minus(place, cam.centre))));
       for (const side of [-reach, reach]) take(cam.centre.map((value) => value + side));
     }
+    return { low, high };
+  }
+
+  fit(): void {
+    this.fits = true;
+    const { low, high } = this.extent();
     if (low[0]! <= high[0]!) this.plane.fit(low, high);
     else {
       const factor = scene.peek()?.display?.length.factor ?? 1;

@@ -147,6 +147,7 @@ export function load(next: string, name: string | null, onDisk: boolean): void {
   place.value = 0;
   playing.value = false;
   awaited = true;
+  tell("");
   settle();
   void read();
 }
@@ -181,6 +182,7 @@ function travel(next: string | null): void {
   if (next === null) return;
   text.value = next;
   belongs(history.file);
+  tell("");
   settle();
   void read();
 }

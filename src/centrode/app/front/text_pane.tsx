@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { TextEditor } from "./editor";
 import type { Completions } from "./protocol";
 import { ask, editing, problems, takeTyped, text, typedBy, write } from "./state";
-import { say, sentence } from "./words";
+import { say, sentence, sentences } from "./words";
 
 let typed = 0;
 let last = 0;
@@ -36,7 +36,7 @@ export function TextPane() {
           return Array.isArray(answer?.options) ? (answer as Completions) : null;
         },
       });
-      stops.push(effect(() => editor!.put(text.value)), effect(() => editor!.mark(problems.value)));
+      stops.push(effect(() => editor!.put(text.value)), effect(() => editor!.mark(problems.value.map((one) => ({ ...one, message: sentences(one.message, one.repair) })))));
     });
     return () => {
       gone = true;

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
+from centrode.dynamics.equilibria.pressed_friction import held_by_friction
 from centrode.dynamics.load_coordinates import Spin, Turn
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -56,15 +57,15 @@ class ConfigurationCurve:
     @cached_property
     def friction(self) -> Array:
         """Greatest generalised dry friction along the curve (n), in the unit of the force."""
-        found = self.equations
-        slopes = np.abs(np.einsum("nfc,nc->nf", found.along, self.tangents))
-        return np.asarray(np.sum(slopes * np.abs(found.friction), axis=1))
+        return held_by_friction(self.loaded, self.places, self.equations, self.tangents)
 
 
 def repeats_with_position(loaded: LoadedMechanism) -> bool:
     """Whether whole turns of links change no load: none depends on the value of an angle but by its sine and cosine."""
     terms = [load.term for load in loaded.equations.loads]
     terms += [friction.term for friction in loaded.frictions]
+    if any(isinstance(one.measures, Turn | Spin) and one.uses_place for one in loaded.equations.controls):
+        return False
     return not any(
         "q" in term.amount.uses or ("x" in term.amount.uses and isinstance(term.coordinate, Turn | Spin))
         for term in terms
@@ -74,24 +75,24 @@ def repeats_with_position(loaded: LoadedMechanism) -> bool:
 def same_position(loaded: LoadedMechanism, places: Array, other: Array) -> Array:
     """How far positions (n, coordinates) are from another one (coordinates), whole turns being none."""
     apart = (places - other) / loaded.units
-    angles = np.array([one.kind == "angle" for one in loaded.coordinates])
     turned = np.abs(2.0 * np.sin(0.5 * apart))
-    return np.asarray(np.max(np.where(angles, turned, np.abs(apart)), axis=-1, initial=0.0))
+    return np.asarray(np.max(np.where(loaded.angles, turned, np.abs(apart)), axis=-1, initial=0.0))
 
 
 def configuration_curve(loaded: LoadedMechanism) -> ConfigurationCurve:
     """The curve of positions through the initial one of a mechanism with one degree of freedom."""
-    begin = loaded.position.coordinates
-    rounds = 1 if repeats_with_position(loaded) else TURNS
+    begin = loaded.start
+    repeats = repeats_with_position(loaded)
+    rounds = 1 if repeats else TURNS
     tangent = _tangent(loaded, begin, None)
     ahead, closed = _walk(loaded, begin, tangent, rounds)
-    if closed and rounds == 1:
+    if closed and repeats:
         behind: list[tuple[Array, Array]] = []
     else:
         behind, _closed = _walk(loaded, begin, -tangent, rounds)
     whole = [(place, -along) for place, along in reversed(behind)] + [(begin, tangent)] + ahead
     places, tangents = (np.array([pair[k] for pair in whole]) for k in (0, 1))
-    return ConfigurationCurve(loaded, places, tangents, len(behind), closed and rounds == 1)
+    return ConfigurationCurve(loaded, places, tangents, len(behind), closed and repeats)
 
 
 def _tangent(loaded: LoadedMechanism, place: Array, before: Array | None) -> Array:
@@ -143,15 +144,14 @@ def _walk(
 
 def _way(loaded: LoadedMechanism, apart: Array) -> Array:
     """A change of the coordinates in their units, angles by less than half a turn."""
-    angles = np.array([one.kind == "angle" for one in loaded.coordinates])
     scaled = apart / loaded.units
-    return np.where(angles, np.remainder(scaled + np.pi, 2.0 * np.pi) - np.pi, scaled)
+    return np.where(loaded.angles, np.remainder(scaled + np.pi, 2.0 * np.pi) - np.pi, scaled)
 
 
 def _is_far(loaded: LoadedMechanism, place: Array) -> bool:
     slid = [
         abs(x / unit)
-        for x, unit, one in zip(place, loaded.units, loaded.coordinates, strict=True)
+        for x, unit, one in zip(place, loaded.units, loaded.coordinates, strict=False)
         if one.kind != "angle"
     ]
     return max(slid, default=0.0) > FAR

@@ -28,9 +28,9 @@ from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-FOLD, BRANCH_POINT, HOPF = "fold", "branch point", "Hopf point"
-KINDS = (FOLD, BRANCH_POINT, HOPF)
-"""An equilibrium is lost; others branch off; oscillations begin to grow."""
+FOLD, BRANCH_POINT, HOPF, KINK = "fold", "branch point", "Hopf point", "kink"
+KINDS = (FOLD, BRANCH_POINT, HOPF, KINK)
+"""An equilibrium is lost; others branch off; oscillations begin to grow; the stiffness jumps (a stop closes)."""
 DEGREE = 20
 """Of the polynomial in which numbers of the equations are expanded along the parameter."""
 EXACT = 1e-12
@@ -40,6 +40,10 @@ MOST_STEPS = 1500
 CORRECTED = 1e-12
 CORRECTIONS = 12
 SAME = 1e-5
+BESIDE, JUMP = 1e-5, 1e-3
+"""Distance to both sides of a place, in units, at which stiffnesses that differ by this share say that they jump."""
+BEYOND = 1e-4
+"""Share of the range of the number by which a kink is passed."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +163,7 @@ def _check_series(
     found: ContinuationNumber, made: Callable[[float], LoadedMechanism], value: float, where: str
 ) -> None:
     """Refuse a number that the numbers of the equations do not tell all about."""
-    own, place = made(value), found.loaded.position.coordinates
+    own, place = made(value), found.loaded.start
     at = place[None] + 0.1 * found.loaded.units
     exact, expanded = own.at(at), found.loaded.at(at, numbers=found.numbers(value))
     for name in ("force", "closures", "mass"):
@@ -186,8 +190,7 @@ class _Follower:
     def __init__(self, along: ContinuationNumber) -> None:
         self.along, self.loaded = along, along.loaded
         self.units = np.append(self.loaded.units, along.unit)
-        angles = [one.kind == "angle" for one in self.loaded.coordinates]
-        self.turning = np.append(angles, False) & repeats_with_position(self.loaded)
+        self.turning = np.append(self.loaded.angles, False) & repeats_with_position(self.loaded)
 
     def apart(self, point: _Point, whole: Array) -> Array:
         """Difference of a point and another one in units; whole turns are none where the loads repeat with them."""
@@ -298,8 +301,16 @@ def _steps(follower: _Follower, start: _Point) -> tuple[list[_Point], list[Criti
         there = follower.ahead(here, step)
         if there is None:
             step *= 0.5
-            if step < LEAST:
+            if step >= LEAST:
+                continue
+            if not _stiffness_jumps(follower, here):
                 break
+            critical.append(CriticalValue(KINK, here.value, here.place))
+            beyond = _point_beyond(follower, here)
+            if beyond is None:
+                break
+            points.append(beyond)
+            here, step = beyond, FIRST
             continue
         if not along.low <= there.value <= along.high:
             end = along.low if there.value < along.low else along.high
@@ -315,6 +326,32 @@ def _steps(follower: _Follower, start: _Point) -> tuple[list[_Point], list[Criti
             return points, critical, True
         here, step = there, min(LONGEST, 1.4 * step)
     return points, critical, False
+
+
+def _stiffness_jumps(follower: _Follower, here: _Point) -> bool:
+    """Whether a force has a kink at a point."""
+    along, loaded = follower.along, follower.loaded
+    scaled = here.tangent / np.max(np.abs(here.tangent / follower.units))
+    found = []
+    for side in (-BESIDE, BESIDE):
+        whole = np.append(here.place, here.value) + side * scaled
+        at = loaded.at(whole[None, :-1], numbers=along.numbers(float(whole[-1])))
+        found.append(at.stiffness[0] * np.outer(loaded.units, loaded.units))
+    return float(np.max(np.abs(found[1] - found[0]))) > JUMP * float(np.max(np.abs(found)))
+
+
+def _point_beyond(follower: _Follower, here: _Point) -> _Point | None:
+    """The point of the branch beyond a kink at which it turns sharply; None where it ends or turns back."""
+    along, moved = follower.along, BEYOND * follower.along.unit
+    value = here.value + (moved if here.tangent[-1] > 0.0 else -moved)
+    if not along.low < value < along.high:
+        return None
+    place = settled_equilibria(follower.loaded, here.place[None], along.numbers(value))[0]
+    way = np.append(place - here.place, value - here.value)
+    # as far as the number goes, or some times as far where the position is soft
+    if not np.max(np.abs(way / follower.units)) < 100.0 * BEYOND:
+        return None
+    return follower.point(np.append(place, value), way)
 
 
 def _point_at_value(

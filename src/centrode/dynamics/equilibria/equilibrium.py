@@ -17,6 +17,7 @@ from centrode.dynamics.equilibria.critical_values import (
     FOLD,
     HOPF,
     KINDS,
+    KINK,
     CriticalValue,
     EquilibriumBranch,
     branches,
@@ -26,8 +27,9 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     Equilibria,
     find_equilibria,
     no_equilibrium,
+    stop_pushes,
 )
-from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach
+from centrode.dynamics.equilibria.friction_bands import friction_bands, friction_reach, friction_share
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import posed_motion
 from centrode.dynamics.equilibria.resting_equilibria import RestingEquilibrium, resting_equilibria
@@ -37,6 +39,7 @@ from centrode.dynamics.equilibria.small_motions import (
     SmallMotions,
     small_motions,
 )
+from centrode.dynamics.load_coordinates import Turn
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
@@ -125,8 +128,9 @@ def equilibrium(
     loaded = loaded_mechanism(description.with_drives_held(), held)
     found = stable_first(find_equilibria(loaded))
     resting = resting_equilibria(loaded, found)
-    if not len(found.places) and not resting:
-        raise no_equilibrium(found.starts)
+    held_up = found.curve is not None and loaded.has_friction and bool(friction_bands(found))
+    if not len(found.places) and not resting and not held_up:
+        raise no_equilibrium(loaded, found.starts)
     if progress is not None:
         progress(0.5)
     followed = () if vary is None else _branches(description, held, found, vary, progress)
@@ -175,7 +179,8 @@ def equilibrium_results(
 def results_of_equilibrium(mechanism: Mechanism, equilibria: xr.Dataset) -> EquilibriumResults:
     """A dataset of `equilibrium` with the positions that are drawn."""
     held = {name: float(value) for name, value in json.loads(equilibria.attrs["hold"]).items()}
-    loaded = loaded_mechanism(mechanism.with_drives_held(), held)
+    drawn = mechanism.with_drives_held().model_copy(update={"controllers": ()})
+    loaded = loaded_mechanism(drawn, held)
     places = equilibria["generalised_coordinate"].values
     return EquilibriumResults(mechanism, equilibria, posed_motion(loaded, np.zeros(len(places)), places))
 
@@ -254,9 +259,12 @@ def _dataset(
     variables |= _stability(motions)
     variables |= _friction(loaded, found, len(resting))
     coordinates: dict[str, Any] = {"equilibrium": np.arange(1, len(places) + 1)}
+    variables |= _controllers(description, loaded, places, coordinates)
     if resting:
         _correct_holding(variables, description, loaded, resting)
-        variables["restraint_force"] = _stop_forces(description, len(found.places), resting)
+    pushes = stop_pushes(loaded, places)
+    if resting or np.any(pushes):
+        variables["restraint_force"] = _stop_forces(description, pushes, len(found.places), resting)
         labels = [stop.label for stop in description.stops]
         coordinates["contact"] = np.array(labels, dtype=object)
     coordinates |= label_values(poses, description)
@@ -369,12 +377,32 @@ def _correct_holding(
             row[own.index(kept.name)] = -description.motion_parameter.drive(kept.name).sense * force
 
 
-def _stop_forces(description: Mechanism, free: int, resting: Sequence[RestingEquilibrium]) -> Any:
-    """Forces of all stops along their coordinates (equilibrium, contact); zero of what is open."""
-    stops = description.stops
-    forces = np.zeros((free + len(resting), len(stops)))
+def _controllers(
+    description: Mechanism, loaded: LoadedMechanism, places: Array, coordinates: dict[str, Any]
+) -> dict[str, Any]:
+    """What controllers give at equilibria, as far as a free drive depends on it; their names among the coordinates."""
+    controls = loaded.equations.controls
+    if not controls:
+        return {}
+    coordinates["controller"] = np.array([one.description.name for one in controls], dtype=object)
+    found = vocabulary_variable("controller_output", ("equilibrium", "controller"), loaded.at(places).output)
+    units = [
+        "N m" if isinstance(one.drives, Turn) else "N" if one.drives is not None else "1" for one in controls
+    ]
+    found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
+    return {"controller_output": found}
+
+
+def _stop_forces(
+    description: Mechanism, pushes: Array, free: int, resting: Sequence[RestingEquilibrium]
+) -> Any:
+    """Forces of all stops along their coordinates (equilibrium, contact); zero of what is open.
+
+    `pushes` are those of compliant stops.
+    """
+    stops, forces = description.stops, pushes.copy()
     for row, one in zip(forces[free:], resting, strict=True):
-        row[:] = [one.forces.get(stop.label, 0.0) for stop in stops]
+        row += [one.forces.get(stop.label, 0.0) for stop in stops]
     found = vocabulary_variable("restraint_force", ("equilibrium", "contact"), forces)
     units = ["N" if stop.link is None else "N m" for stop in stops]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
@@ -383,7 +411,7 @@ def _stop_forces(description: Mechanism, free: int, resting: Sequence[RestingEqu
 
 def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[str, Any]:
     """Where dry friction holds: intervals with one degree of freedom, bounds about each equilibrium with more."""
-    if not loaded.frictions:
+    if not loaded.has_friction:
         return {}
     units = [one.unit for one in loaded.coordinates]
     unit = units[0] if len(set(units)) == 1 else ", ".join(units)
@@ -396,12 +424,15 @@ def _friction(loaded: LoadedMechanism, found: Equilibria, resting: int) -> dict[
     if found.curve is None:
         reach = friction_reach(loaded, found.places)
         # on a stop friction has no bounds of its own
-        reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])
+        reach = np.concatenate([reach, np.full((resting, loaded.size), np.nan)])[:, : loaded.joints]
         return {"friction_reach": named_number("friction_reach", ("equilibrium", "coordinate"), reach)}
     bands = friction_bands(found)
-    ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)
+    ends = np.array([band.ends for band in bands]).reshape(len(bands), 2, loaded.size)[:, :, : loaded.joints]
     whole = np.array([band.whole for band in bands], dtype=np.int8)
+    feeds = np.array([band.feeds_itself for band in bands], dtype=np.int8)
     return {
+        "friction_share": vocabulary_variable("friction_share", (), np.array(friction_share(found))),
+        "friction_feeds_itself": vocabulary_variable("friction_feeds_itself", ("band",), feeds),
         "friction_band": named_number("friction_band", ("band", "end", "coordinate"), ends),
         "friction_holds_everywhere": vocabulary_variable("friction_holds_everywhere", ("band",), whole),
     }
@@ -412,7 +443,7 @@ def _branch_variables(
 ) -> dict[str, Any]:
     unit = QUANTITY_KINDS[kind].unit if kind in QUANTITY_KINDS else "1"
     none = np.zeros((0, loaded.size))
-    places = np.concatenate([none, *(one.places for one in followed)])
+    places = np.concatenate([none, *(one.places for one in followed)])[:, : loaded.joints]
     values = np.concatenate([np.zeros(0), *(one.values for one in followed)])
     numbers = np.concatenate(
         [np.zeros(0), *(np.full(len(one.values), k + 1.0) for k, one in enumerate(followed))]
@@ -420,12 +451,12 @@ def _branch_variables(
     words = [motion.stability for one in followed for motion in one.motions]
     critical: list[CriticalValue] = []
     # where branches cross, one of them turns round: that is no fold
-    for kind in (BRANCH_POINT, FOLD, HOPF):
+    for kind in (BRANCH_POINT, FOLD, HOPF, KINK):
         for one in (one for branch in followed for one in branch.critical if one.kind == kind):
             if not any(_same_place(loaded, one, other) for other in critical):
                 critical.append(one)
     critical.sort(key=lambda one: one.value)
-    at = np.array([one.place for one in critical]).reshape(len(critical), loaded.size)
+    at = np.array([one.place for one in critical]).reshape(len(critical), loaded.size)[:, : loaded.joints]
 
     def of_number(name: str, dimension: str, numbers: Array) -> Any:
         variable = vocabulary_variable(name, (dimension,), numbers)

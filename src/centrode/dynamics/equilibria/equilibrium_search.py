@@ -21,8 +21,9 @@ from centrode.dynamics.equilibria.configuration_curve import (
     repeats_with_position,
     same_position,
 )
-from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
-from centrode.dynamics.forward_dynamics.contacts import coordinate_of_part
+from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
+from centrode.dynamics.forward_dynamics.contacts import StopPush, stop_coordinate
+from centrode.dynamics.loads import Situation
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
@@ -46,6 +47,10 @@ BALANCED = 1e-9
 """Share of the forces that may be left at an equilibrium."""
 SAME = 1e-6
 """Equilibria nearer than this are one."""
+HALVINGS = 45
+"""Of a pace along the curve, down to rounding."""
+STATES_EVERY, STATE_STEPS = 5, 3
+"""Every so many places of a curve are starts where controllers have states, and corrections of these states."""
 IDLE = 1e-12
 """Forces below this share of weights and springs are none."""
 
@@ -76,41 +81,53 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     InputError
         Nothing can move, or nothing acts.
     MotionError
-        No equilibrium is found, and there is no stop on which one could rest.
+        No equilibrium is found, and there is neither a stop on which one could rest nor friction that holds.
     """
     if not loaded.mobility:
         what = _("nothing can move: all drives are held, or it has no degree of freedom")
         raise InputError("hold", what, _("hold fewer drives"))
     curve = configuration_curve(loaded) if loaded.mobility == 1 else None
-    walked = None if curve is not None else walked_positions(loaded)
-    starts = walked if walked is not None else _starts_on(curve)
-    _check_forces(loaded, curve.places if curve is not None else starts)
-    found = settled_equilibria(loaded, starts)
     if curve is None:
+        starts = walked_positions(loaded)
+    else:
+        starts = curve.places[::STATES_EVERY] if loaded.states else _starts_on(curve)
+    _check_forces(loaded, curve.places if curve is not None else starts)
+    if curve is not None and not loaded.states:
+        _check_gap(curve)
+    if loaded.states:
+        # force and position say nothing without the states of controllers
+        curve, starts = None, with_states(loaded, starts)
+    found = settled_equilibria(loaded, starts)
+    if curve is None and not loaded.states:
         found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
     places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
-    if not len(places) and not loaded.mechanism.stops:
-        raise no_equilibrium(len(starts) if curve is None else len(curve.places))
+    if not len(places) and not loaded.mechanism.stops and not loaded.has_friction:
+        raise no_equilibrium(loaded, len(starts) if curve is None else len(curve.places))
     count = len(curve.places) if curve is not None else len(starts)
     return Equilibria(loaded, places, count, curve)
 
 
-def no_equilibrium(count: int) -> MotionError:
+def no_equilibrium(loaded: LoadedMechanism, count: int) -> MotionError:
     """The error of a mechanism that stays nowhere, from so many positions."""
     what = _("no equilibrium is found from {count} positions")
     repair = _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)")
+    if loaded.states:
+        what = _("no equilibrium is found from {count} positions in which the states of controllers rest too")
+        repair = _(
+            "let the controllers reach their targets: see most, and what is between the drive and its target"
+        )
     return MotionError("", what.format(count=count), repair)
 
 
 def walked_positions(loaded: LoadedMechanism) -> Array:
     """Positions (n, coordinates) that random walks from the initial one reach, the initial one first."""
     generator = np.random.default_rng(30)
-    lanes = np.tile(loaded.position.coordinates, (LANES, 1))
-    found = [loaded.position.coordinates[None]]
+    lanes = np.tile(loaded.start, (LANES, 1))
+    found = [loaded.start[None]]
     way = np.zeros((LANES, loaded.mobility))
     for _pace in range(PACES):
         _left, rows = loaded.closures_at(lanes)
-        free = loaded.free_directions(rows)
+        free = loaded.free_directions(rows)[:, :, : loaded.mobility]
         # walks go on as they did, more or less, so that they come far
         way = 0.7 * way + generator.normal(size=way.shape)
         moved = np.einsum("ncm,nm->nc", free, way)
@@ -129,30 +146,69 @@ def _starts_on(curve: ConfigurationCurve | None) -> Array:
     assert curve is not None
     force = curve.force
     size = np.abs(force)
-    starts = [curve.loaded.position.coordinates]
+    starts = [curve.loaded.start]
     here, there = force[:-1], force[1:]
-    for k in np.flatnonzero((here < 0.0) != (there < 0.0)):
-        share = here[k] / (here[k] - there[k])
-        starts.append(curve.places[k] + share * (curve.places[k + 1] - curve.places[k]))
+    turns = np.flatnonzero((here < 0.0) != (there < 0.0))
+    if has_kinks(curve.loaded):
+        # from beside a kink Newton's method sees another stiffness than that where the force vanishes
+        starts += list(_halved(curve, turns))
+    else:
+        share = (here / np.where(here == there, 1.0, here - there))[turns, None]
+        starts += list(curve.places[turns] + share * (curve.places[turns + 1] - curve.places[turns]))
     least = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
     starts += list(curve.places[least])
     return np.array(starts)
 
 
+def _check_gap(curve: ConfigurationCurve) -> None:
+    """Refuse a stretch in which nothing acts, as between two buffers: each of its positions is an equilibrium."""
+    loaded = curve.loaded
+    idle = np.flatnonzero(np.abs(curve.force) <= IDLE * np.max(np.abs(curve.force), initial=0.0))
+    runs = [run for run in np.split(idle, np.flatnonzero(np.diff(idle) > 1) + 1) if len(run) > 2]
+    if not runs:
+        return
+    first, last = sorted(float(curve.places[k, 0]) for k in (runs[0][0], runs[0][-1]))
+    what = _(
+        "nothing acts from about {first:.3g} to {last:.3g} {unit} of {name}: every position there is an equilibrium"
+    )
+    one = loaded.coordinates[0]
+    text = what.format(first=first, last=last, unit=one.unit, name=one.name)
+    raise InputError("[[loads]]", text, _("add gravity, springs or other loads"))
+
+
+def has_kinks(loaded: LoadedMechanism) -> bool:
+    """Whether the stiffness jumps where a compliant stop closes, or a controller reaches its bound."""
+    stops, controls = loaded.mechanism.stops, loaded.equations.controls
+    return any(not stop.is_rigid for stop in stops) or any("most" in one.gains for one in controls)
+
+
+def _halved(curve: ConfigurationCurve, turns: npt.NDArray[np.intp]) -> Array:
+    """Positions (turns, coordinates) of a curve where the force behind each of some places vanishes, by halving."""
+    first, last = curve.places[turns], curve.places[turns + 1]
+    sign = np.sign(curve.force[turns])
+    for _halving in range(HALVINGS if len(turns) else 0):
+        middle = curve.loaded.closed_coordinates(0.5 * (first + last))
+        force = np.einsum("nc,nc->n", curve.loaded.at(middle).force, curve.tangents[turns])
+        same = (np.sign(force) == sign)[:, None]
+        first, last = np.where(same, middle, first), np.where(same, last, middle)
+    return 0.5 * (first + last)
+
+
 def force_scale(loaded: LoadedMechanism, places: Array) -> float:
     """What generalised forces are compared with [J]: the greatest at some positions, or a unit away from them."""
-    found = loaded.at(places)
-    force = np.abs(found.force * loaded.units)
-    stiffness = np.abs(found.stiffness * np.outer(loaded.units, loaded.units))
+    found, joints = loaded.at(places), loaded.joints
+    force = np.abs(found.force * loaded.units)[:, :joints]
+    stiffness = np.abs(found.stiffness * np.outer(loaded.units, loaded.units))[:, :joints, :joints]
     sizes = [np.max(one[np.isfinite(one)], initial=0.0) for one in (force, stiffness)]
     return float(max(sizes))
 
 
 def _check_forces(loaded: LoadedMechanism, places: Array) -> None:
     """Refuse what stays everywhere, because nothing acts along what can move."""
-    found = loaded.at(places)
-    force = np.einsum("nc,ncm->nm", found.force, loaded.free_directions(found.rows))
-    scale = float(np.max(np.abs(found.force * loaded.units), initial=0.0))
+    found, joints = loaded.at(places), loaded.joints
+    force = np.einsum("nc,ncm->nm", found.force[:, :joints], loaded.free_directions(found.rows)[:, :joints])
+    # a spring of no length has no direction there
+    scale = float(np.nanmax(np.abs(found.force * loaded.units)[:, :joints], initial=0.0))
     if not np.nanmax(np.abs(force), initial=0.0) > IDLE * scale:
         what = _("no load acts along what can move: every position is an equilibrium")
         raise InputError("[[loads]]", what, _("add gravity, springs or other loads"))
@@ -199,11 +255,35 @@ def settled_equilibria(
     if len(settling):
         found = loaded.at(places[settling], numbers=numbers)
         free = loaded.free_directions(found.rows)
-        force = np.max(np.abs(np.einsum("nc,ncm->nm", found.residual, free)), axis=1, initial=0.0)
-        settling = settling[force <= BALANCED * scale]
+        force = np.abs(np.einsum("nc,ncm->nm", found.residual, free))[:, : loaded.mobility]
+        settling = settling[
+            (np.max(force, axis=1, initial=0.0) <= BALANCED * scale) & _states_rest(loaded, found)
+        ]
     found_ones = np.zeros(len(places), dtype=bool)
     found_ones[settling] = True
     places[~found_ones] = np.nan
+    return places
+
+
+def _states_rest(loaded: LoadedMechanism, found: LinearEquations) -> npt.NDArray[np.bool_]:
+    """Whether the states of controllers change (n) by no more than by rounding of what they depend on."""
+    joints = loaded.joints
+    bent = np.abs(found.stiffness[:, joints:] * loaded.units)
+    return np.asarray(
+        np.all(np.abs(found.residual[:, joints:]) <= BALANCED * np.max(bent, axis=2, initial=0.0), axis=1)
+    )
+
+
+def with_states(loaded: LoadedMechanism, places: Array) -> Array:
+    """Positions (n, coordinates) with states of controllers that come nearest to rest there, and to balance."""
+    joints, places = loaded.joints, places.copy()
+    for _step in range(STATE_STEPS):
+        found = loaded.at(places)
+        free = loaded.free_directions(found.rows)
+        force, stiffness = _reduced_system(found.residual, found.stiffness, free)
+        change = np.linalg.pinv(np.nan_to_num(stiffness[:, :, loaded.mobility :]), 1e-9)
+        moved = np.einsum("nij,nj->ni", change, np.nan_to_num(force))
+        places[:, joints:] += moved * loaded.units[joints:]
     return places
 
 
@@ -220,37 +300,50 @@ def _moved_positions(
 ) -> tuple[Array, Array]:
     """Positions behind a step, closed, and how long the step is; a long one is cut."""
     step = np.einsum("ncm,nm->nc", free, along)
-    longest = np.max(np.abs(step / loaded.units), axis=1, initial=0.0)
+    sizes = np.abs(step / loaded.units)
+    # states of controllers may be far away, and are compared with their own size
+    sizes[:, loaded.joints :] /= np.maximum(1.0, np.abs(places / loaded.units)[:, loaded.joints :])
+    whole = np.max(sizes, axis=1, initial=0.0)
+    longest = np.max(sizes[:, : loaded.joints], axis=1, initial=0.0)
     with np.errstate(all="ignore"):
         step = step * np.minimum(1.0, LONGEST / np.maximum(longest, 1e-300))[:, None]
     ahead = loaded.closed_coordinates(places + step, numbers)
     # where it does not close it stays, and tries the other side
     lost = ~np.isfinite(ahead[:, 0])
     ahead[lost] = places[lost]
-    return ahead, np.where(lost, np.inf, longest)
+    return ahead, np.where(lost, np.inf, whole)
 
 
 def stop_values(loaded: LoadedMechanism, places: Array) -> Array:
     """Coordinates of all stops (n, stops) [rad or m] at positions (n, coordinates)."""
     stops = loaded.mechanism.stops
-    tree = loaded.equations.tree
+    tree, places = loaded.equations.tree, places[:, : loaded.joints]
     jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
     state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
-    found = [
-        coordinate_of_part(loaded.mechanism, stop, f"[[stops]] {stop.label}").value(state) for stop in stops
-    ]
+    found = [stop_coordinate(loaded.mechanism, stop).value(state) for stop in stops]
     return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(stops), len(places)).T
 
 
+def stop_pushes(loaded: LoadedMechanism, places: Array) -> Array:
+    """Forces of compliant stops along their coordinates (n, stops) [N m or N] at rest; zero of rigid ones."""
+    stops, values = loaded.mechanism.stops, stop_values(loaded, places)
+    found = np.zeros_like(values)
+    for k, stop in enumerate(stops):
+        if not stop.is_rigid:
+            law = StopPush(stop.least, stop.most, stop.stiffness, stop.damping or 0.0)
+            found[:, k] = law(Situation(0.0, np.nan, values[:, k], 0.0, 0.0, ARRAYS))
+    return found
+
+
 def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
-    """Those of some positions (n, coordinates) that no stop forbids."""
+    """Those of some positions (n, coordinates) that no rigid stop forbids."""
     if not loaded.mechanism.stops or not len(places):
         return places
     low, high = (
         np.array([away if bound is None else float(bound) for bound in bounds])
         for away, bounds in (
-            (-np.inf, [stop.least for stop in loaded.mechanism.stops]),
-            (np.inf, [stop.most for stop in loaded.mechanism.stops]),
+            (-np.inf, [stop.least if stop.is_rigid else None for stop in loaded.mechanism.stops]),
+            (np.inf, [stop.most if stop.is_rigid else None for stop in loaded.mechanism.stops]),
         )
     )
     values = stop_values(loaded, places)
@@ -259,12 +352,11 @@ def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
 
 def _distinct(loaded: LoadedMechanism, places: Array) -> Array:
     """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first."""
-    begin = loaded.position.coordinates
+    begin = loaded.start
     repeats = repeats_with_position(loaded)
     if repeats:
-        angles = np.array([one.kind == "angle" for one in loaded.coordinates])
         turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
-        places = np.where(angles, places - turns, places)
+        places = np.where(loaded.angles, places - turns, places)
 
     def apart(one: Array) -> Array:
         if repeats:

@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 from centrode.dynamics.equilibria.configuration_curve import STEP, ConfigurationCurve, same_position
 from centrode.dynamics.equilibria.equilibrium_search import Equilibria
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
+from centrode.dynamics.equilibria.pressed_friction import held_by_friction, pressed_joints
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -34,20 +35,22 @@ class FrictionBand:
     ----------
     ends : (2, coordinates) [rad or m], in the sense of the curve
     whole : friction holds in every position
+    feeds_itself : frictions could make one another grow, so that slip may be possible there as well as rest
     """
 
     ends: Array
     whole: bool = False
+    feeds_itself: bool = False
 
 
 def friction_bands(equilibria: Equilibria) -> tuple[FrictionBand, ...]:
     """The intervals in which dry friction holds a mechanism with one degree of freedom; none without friction."""
     curve, loaded = equilibria.curve, equilibria.loaded
-    if curve is None or not loaded.frictions:
+    if curve is None or not loaded.has_friction:
         return ()
     spare = curve.friction - np.abs(curve.force)
     if np.all(spare >= 0.0):
-        return (FrictionBand(curve.places[[0, -1]], whole=True),)
+        return (FrictionBand(curve.places[[0, -1]], True, _feeds_itself(loaded, curve.places)),)
     seeds = [*equilibria.places, *(curve.places[run[len(run) // 2]] for run in _runs(spare >= 0.0))]
     bands: list[FrictionBand] = []
     for seed in seeds:
@@ -56,7 +59,8 @@ def friction_bands(equilibria: Equilibria) -> tuple[FrictionBand, ...]:
         tangent = _tangent(loaded, seed, curve)
         ends = np.array([_end(loaded, seed, -tangent), _end(loaded, seed, tangent)])
         if not any(np.max(same_position(loaded, band.ends, ends[0])[:1]) < 1e-7 for band in bands):
-            bands.append(FrictionBand(ends))
+            within = curve.places[_numbers_within(curve, ends)]
+            bands.append(FrictionBand(ends, False, _feeds_itself(loaded, np.concatenate([ends, within]))))
     return tuple(bands)
 
 
@@ -68,10 +72,38 @@ def friction_reach(loaded: LoadedMechanism, places: Array) -> Array:
     found = loaded.at(places)
     free = loaded.free_directions(found.rows)
     stiffness = np.einsum("ncm,ncd,nde->nme", free, found.stiffness, free)
-    contacts = np.einsum("ncm,nfc->nmf", free, found.along)
+    along, sizes = found.along, np.abs(found.friction)
+    if loaded.equations.contacts:
+        # friction that the reactions without it make: it changes them in the second order alone
+        joints = pressed_joints(loaded, places, found)
+        along, sizes = joints.along, joints.greatest(np.zeros_like(joints.sizes), np.zeros(len(places)))
+    contacts = np.einsum("ncm,nfc->nmf", free, along)
     with np.errstate(all="ignore"):
         moved = free @ np.linalg.pinv(stiffness, 1e-12) @ contacts
-    return np.asarray(np.einsum("ncf,nf->nc", np.abs(moved), np.abs(found.friction)))
+    return np.asarray(np.einsum("ncf,nf->nc", np.abs(moved), sizes))
+
+
+def _feeds_itself(loaded: LoadedMechanism, places: Array) -> bool:
+    """Whether friction by coefficients could make itself grow at one of some positions (n, coordinates)."""
+    if not loaded.equations.contacts:
+        return False
+    return bool(np.any(pressed_joints(loaded, places, loaded.at(places)).feedback() >= 1.0))
+
+
+def _numbers_within(curve: ConfigurationCurve, ends: Array) -> npt.NDArray[np.intp]:
+    """Numbers of the places of a curve from one end of a band to the other."""
+    first, last = (int(np.argmin(same_position(curve.loaded, curve.places, one))) for one in ends)
+    count = len(curve.places)
+    return np.arange(first, last + 1 if first <= last else last + 1 + count) % count
+
+
+def friction_share(equilibria: Equilibria) -> float:
+    """Share of the friction that keeps the initial position, with one degree of freedom; above 1 it does not hold."""
+    curve = equilibria.curve
+    if curve is None or not equilibria.loaded.has_friction:
+        return float("nan")
+    load, most = abs(float(curve.force[curve.start])), float(curve.friction[curve.start])
+    return load / most if most > 0.0 else float("inf") if load else 0.0
 
 
 def _runs(holds: npt.NDArray[np.bool_]) -> list[Array]:
@@ -94,9 +126,9 @@ def _tangent(loaded: LoadedMechanism, place: Array, curve: ConfigurationCurve) -
 def _spare(loaded: LoadedMechanism, place: Array) -> float:
     """How much more friction could hold [J per unit along the free direction]; below zero it does not."""
     found = loaded.at(place[None])
-    free = loaded.free_directions(found.rows)[0, :, 0]
-    friction = float(np.sum(np.abs(found.along[0] @ free) * np.abs(found.friction[0])))
-    return friction - abs(float(found.force[0] @ free))
+    free = loaded.free_directions(found.rows)[:, :, 0]
+    friction = float(held_by_friction(loaded, place[None], found, free)[0])
+    return friction - abs(float(found.force[0] @ free[0]))
 
 
 def _end(loaded: LoadedMechanism, seed: Array, tangent: Array) -> Array:

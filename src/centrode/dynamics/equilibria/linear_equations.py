@@ -11,7 +11,7 @@ is traced once and differentiated by the chain rule, so nothing is taken by diff
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -19,8 +19,19 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.equilibria.controllers_at_rest import controls_at_rest
+from centrode.dynamics.equilibria.friction_openings import graph_of_openings
+from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, stop_coordinate
+from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
-from centrode.dynamics.forward_dynamics.free_loads import free_loads_of, has_sense, is_dry, shafts_of
+from centrode.dynamics.forward_dynamics.free_loads import (
+    coordinate_of_drive,
+    dry_frictions_of,
+    free_loads_of,
+    has_sense,
+    is_dry,
+    shafts_of,
+)
 from centrode.dynamics.forward_dynamics.initial_position import (
     InitialPosition,
     equation_units,
@@ -29,7 +40,12 @@ from centrode.dynamics.forward_dynamics.initial_position import (
 )
 from centrode.dynamics.forward_dynamics.initial_state import drive_values, initial_state
 from centrode.dynamics.forward_dynamics.model_numbers import NumbersAsVariables
+from centrode.dynamics.forward_dynamics.pressed_contacts import (
+    pressed_contacts_of,
+    refuse_undetermined_presses,
+)
 from centrode.dynamics.forward_dynamics.spanning_tree import JointCoordinate, spanning_tree_of
+from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import AppliedLoad, Constant, Friction, LoadTerm, MassesAndLoads, Situation
 from centrode.dynamics.simulation.multibody_motion import driving_efforts
 from centrode.errors import InputError, NotComputedYet
@@ -38,6 +54,7 @@ from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest
+from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, variable
 from centrode.numerics.graphs import Graph, directional_derivatives
 from centrode.numerics.jets import Jet
@@ -75,6 +92,9 @@ class LinearEquations:
     drift, bias : (n, e) derivatives of the left sides by time: the first, and of the second what speeds alone make
     mass, damping, stiffness : (n, c, c) M, C and K
     friction, along : (n, f), (n, f, c) greatest dry frictions, and the derivatives of what they act along
+    output : (n, controllers) what controllers give
+
+    Of a state of a controller force and residual are its rate, less how fast it changes.
     """
 
     residual: Array
@@ -88,6 +108,7 @@ class LinearEquations:
     stiffness: Array
     friction: Array
     along: Array
+    output: Array
 
 
 @dataclass(frozen=True)
@@ -113,14 +134,51 @@ class LoadedMechanism:
         return self.equations.tree.coordinates
 
     @property
-    def size(self) -> int:
-        """Number of coordinates."""
+    def joints(self) -> int:
+        """Number of joint coordinates."""
         return self.equations.size
 
     @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states of controllers, which follow the joint coordinates."""
+        return tuple(f"{one.label}: {name}" for one in self.equations.controls for name, _start in one.states)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates, states of controllers among them."""
+        return self.joints + len(self.states)
+
+    @cached_property
+    def start(self) -> Array:
+        """Coordinates of the initial position, and states as they are then."""
+        return np.append(self.position.coordinates, states_of(self.equations.controls))
+
+    @cached_property
+    def angles(self) -> npt.NDArray[np.bool_]:
+        """Which coordinates are angles."""
+        return np.array(
+            [one.kind == "angle" for one in self.coordinates] + [False] * len(self.states), dtype=bool
+        )
+
+    @cached_property
     def units(self) -> Array:
-        """What a change of each coordinate is compared with (coordinates): 1 rad, or the greatest length."""
-        return units_of(self.equations.tree, self.equations.numbers)
+        """What a change of each coordinate is compared with (coordinates): 1 rad, or the greatest length.
+
+        States of controllers are compared with what changes their moments by as much as the loads are.
+        """
+        found = units_of(self.equations.tree, self.equations.numbers)
+        if not self.states:
+            return found
+        here = self._evaluate(self.start[None], np.zeros((1, self.equations.equations)), None, None)
+        moved = np.abs(here.stiffness[0, : self.joints, self.joints :] * found[:, None]).max(
+            axis=0, initial=0.0
+        )
+        forces = np.abs(here.force[0, : self.joints] * found)
+        bent = np.abs(here.stiffness[0, : self.joints, : self.joints] * np.outer(found, found))
+        size = max(float(forces.max(initial=0.0)), float(bent.max(initial=0.0)))
+        return np.append(
+            found, np.where((moved > 0.0) & (size > 0.0), size / np.where(moved > 0.0, moved, 1.0), 1.0)
+        )
 
     @cached_property
     def equation_units(self) -> Array:
@@ -146,12 +204,16 @@ class LoadedMechanism:
     def graph(self) -> Graph:
         """All of the linear equations, entry by entry; what is a plain zero is left out."""
         m, equations = EXPRESSIONS, self.traced_equations.equations
-        q = [variable(f"coordinate {k}") for k in range(self.size)]
-        v = [variable(f"speed {k}") for k in range(self.size)]
+        every = [[variable(f"{name} {k}") for k in range(self.size)] for name in ("coordinate", "speed")]
+        q, v = (one[: self.joints] for one in every)
         time = variable(TIME)
         values = equations.tree.values(m, q)
-        terms = equations.terms(m, values, v, time)
-        force = [as_node(terms.force.get(i, 0.0)) for i in range(self.size)]
+        terms = equations.terms(m, values, v, time, states=every[0][self.joints :])
+        force = [as_node(terms.force.get(i, 0.0)) for i in range(self.joints)]
+        # a state changes at its rate, so what is left of both is an equation like those of the forces
+        force += [
+            as_node(rate - own) for rate, own in zip(terms.state_rates, every[1][self.joints :], strict=True)
+        ]
         residual: list[Any] = list(force)
         for k, row in enumerate(terms.rows):
             for i, x in row.items():
@@ -165,8 +227,9 @@ class LoadedMechanism:
         outputs |= {f"rows {k} {i}": as_node(x) for k, row in enumerate(terms.rows) for i, x in row.items()}
         for (i, j), x in terms.mass.items():
             outputs[f"mass {i} {j}"] = outputs[f"mass {j} {i}"] = as_node(x)
-        outputs |= _matrix("stiffness", left, q)
-        outputs |= _matrix("damping", force, v)
+        outputs |= _matrix("stiffness", left, every[0])
+        outputs |= _matrix("damping", force, every[1])
+        outputs |= {f"output {k}": as_node(x) for k, x in enumerate(terms.outputs)}
         for number, friction in enumerate(self.frictions):
             state = equations.state(m, values, [Jet((x, y, 0.0)) for x, y in zip(q, v, strict=True)], time)
             coordinate = friction.term.coordinate
@@ -217,6 +280,7 @@ class LoadedMechanism:
         shapes = {
             "residual": (c,), "force": (c,), "closures": (e,), "rows": (e, c), "drift": (e,), "bias": (e,),
             "mass": (c, c), "damping": (c, c), "stiffness": (c, c), "friction": (f,), "along": (f, c),
+            "output": (len(self.equations.controls),),
         }  # fmt: skip
         arrays = {name: np.zeros((count, *shape)) for name, shape in shapes.items()}
         for name, x in found.items():
@@ -227,10 +291,22 @@ class LoadedMechanism:
 
     def reactions(self, found: LinearEquations) -> Array:
         """Forces of the closures (n, equations) that leave least to accelerate."""
-        rows = found.rows * self.units[None, None, :]
-        return np.asarray(
-            np.einsum("nkc,nc->nk", np.linalg.pinv(rows.transpose(0, 2, 1), RANK), found.force * self.units)
-        )
+        return self.reactions_to(found.rows, found.force)
+
+    def reactions_to(self, rows: Array, force: Array) -> Array:
+        """Forces of closures with G (n, equations, coordinates) under forces (n, coordinates), as in `reactions`."""
+        scaled = (rows * self.units).transpose(0, 2, 1)
+        return np.asarray(np.einsum("nkc,nc->nk", np.linalg.pinv(scaled, RANK), force * self.units))
+
+    @cached_property
+    def graph_of_openings(self) -> Graph:
+        """What friction by coefficients acts along, and what openings of its joints ask for."""
+        return graph_of_openings(self.traced_equations.equations, len(self.states), TIME)
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether dry friction may hold it."""
+        return bool(self.frictions or self.equations.contacts)
 
     def with_numbers_of(self, other: LoadedMechanism) -> EquationsOfMotion:
         """The equations of another mechanism of this structure, with wheels that mesh as they do here."""
@@ -277,12 +353,12 @@ class LoadedMechanism:
     @property
     def mobility(self) -> int:
         """Degrees of freedom, drives that are held taken off."""
-        return self.size - self.rank
+        return self.joints - self.rank
 
     def _places_nearby(self) -> Array:
         """The initial position, and others that need not close: in general rows are as independent there."""
         generator = np.random.default_rng(3)
-        here = self.position.coordinates
+        here = self.start
         away = generator.uniform(-0.3, 0.3, (4, self.size)) * self.units
         return np.array([here, *(self.closed_coordinates(here + one) for one in away)])
 
@@ -291,12 +367,19 @@ class LoadedMechanism:
         return np.asarray(rows * self.units / self.equation_units[:, None])
 
     def free_directions(self, rows: Array) -> Array:
-        """Columns (n, coordinates, mobility) along which the closures let it move, of unit length in the units."""
-        count = len(rows)
-        if not rows.shape[1]:
-            return np.broadcast_to(np.diag(self.units), (count, self.size, self.size)).copy()
-        _left, _sizes, right = np.linalg.svd(self.scaled_rows(rows))
-        return np.asarray(right[:, self.rank :, :].transpose(0, 2, 1) * self.units[None, :, None])
+        """Columns (n, coordinates, freedoms) along which the closures let it move, of unit length in the units.
+
+        States of controllers are the last ones, each by itself.
+        """
+        count, joints, freedoms = len(rows), self.joints, self.size - self.rank
+        found = np.zeros((count, self.size, freedoms))
+        if rows.shape[1]:
+            _left, _sizes, right = np.linalg.svd(self.scaled_rows(rows)[:, :, :joints])
+            found[:, :joints, : self.mobility] = right[:, self.rank :, :].transpose(0, 2, 1)
+        else:
+            found[:, :joints, :joints] = np.eye(joints)
+        found[:, joints:, self.mobility :] = np.eye(len(self.states))
+        return np.asarray(found * self.units[None, :, None])
 
     def closed_coordinates(self, coordinates: Array, numbers: Mapping[str, Number] | None = None) -> Array:
         """Coordinates nearest to these (coordinates) or (n, coordinates) that close; NaN where none are found."""
@@ -341,7 +424,7 @@ class LoadedMechanism:
 
     def drive_values(self, coordinates: Array) -> dict[str, float]:
         """Values of all drives [rad or m; on the sphere of guides rad] at joint coordinates."""
-        return drive_values(self.equations, coordinates)
+        return drive_values(self.equations, coordinates[: self.joints])
 
 
 def _matrix(name: str, outputs: Sequence[Node], by: Sequence[Node]) -> dict[str, Node]:
@@ -372,7 +455,7 @@ def loaded_mechanism(
     InputError
         It does not close, there is neither mass nor load, a drive is not known, or something depends on time.
     NotComputedYet
-        A load with a force for each sense of a motion, a running belt, a plain sum of friction, a controller.
+        A load with a force for each sense of a motion, a running belt, a plain sum of friction.
     """
     hold, speeds = hold or {}, speeds or {}
     for name in (*hold, *speeds):
@@ -381,13 +464,16 @@ def loaded_mechanism(
             raise InputError("[[drives]]", what, nearest(name, [drive.id for drive in mechanism.drives]))
     tree = spanning_tree_of(mechanism)
     position = position_of_description(mechanism, tree)
-    burden = MassesAndLoads.of(mechanism)
-    frictions = _dry_frictions(mechanism, burden.loads)
+    pressed = pressed_contacts_of(mechanism)
+    given = without_friction(mechanism)
+    burden = MassesAndLoads.of(given)
+    frictions = _dry_frictions(given, burden.loads)
+    _check_belts(pressed)
     kept_names = (*hold, *speeds)
-    _check_controllers(mechanism, kept_names)
     motors = [one for one in driving_efforts(mechanism, "0") if one.drive not in kept_names]
-    loads = free_loads_of(mechanism, burden.loads, motors)
+    loads = free_loads_of(given, burden.loads, motors)
     _check_times(loads)
+    loads = (*loads, *_stop_pushes(mechanism))
     equations = EquationsOfMotion(
         tree, position.numbers, burden.masses, loads, (), shafts=shafts_of(mechanism)
     )
@@ -396,8 +482,15 @@ def loaded_mechanism(
         brought = initial_state(equations, position.coordinates, {}, values)
         position = InitialPosition(brought.coordinates, position.numbers)
     begin = drive_values(equations, position.coordinates)
+    controls = controls_at_rest(mechanism, kept_names, _measured_values(mechanism, equations, position))
     kept = _kept_drives(mechanism, {name: (begin[name], speeds.get(name, 0.0)) for name in (*hold, *speeds)})
-    return LoadedMechanism(mechanism, replace(equations, kept=kept), position, frictions)
+    equations = replace(equations, kept=kept, controls=controls)
+    if pressed:
+        contacts = (*dry_frictions_of(given, burden.loads), *pressed)
+        equations = replace(equations, contacts=contacts)
+        every = replace(equations, dependent=frozenset(range(equations.equations)))
+        refuse_undetermined_presses(every, position.coordinates)
+    return LoadedMechanism(mechanism, equations, position, frictions)
 
 
 def _dry_frictions(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[DryFriction, ...]:
@@ -420,11 +513,31 @@ def _dry_frictions(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[
     return tuple(found)
 
 
-def _check_controllers(mechanism: Mechanism, kept: Collection[str]) -> None:
-    for one in mechanism.controllers:
-        if one.drive is not None and one.drive not in kept:
-            what = _("what a controller gives at rest is not sought")
-            raise NotComputedYet(f"[[controllers]] {one.name}", what, _("hold its drive, or remove it"))
+def _check_belts(pressed: Sequence[Contact]) -> None:
+    for contact in pressed:
+        if contact.drift:
+            what = _("a belt that runs goes on pushing: there is no rest")
+            raise NotComputedYet(f"[[loads]] {contact.label}", what, _("simulate it"))
+
+
+def _stop_pushes(mechanism: Mechanism) -> Iterator[LoadAlong]:
+    """Compliant stops as loads: they push wherever the coordinate is beyond their bounds."""
+    for stop in mechanism.stops:
+        if not stop.is_rigid:
+            law = StopPush(stop.least, stop.most, stop.stiffness, stop.damping or 0.0)
+            term = LoadTerm(stop_coordinate(mechanism, stop), law)  # type: ignore[arg-type]
+            yield LoadAlong(stop.label, term)
+
+
+def _measured_values(
+    mechanism: Mechanism, equations: EquationsOfMotion, position: InitialPosition
+) -> dict[str, float]:
+    """Coordinates of all drives [rad or m], as controllers measure them."""
+    if not mechanism.controllers:
+        return {}
+    jets = [Jet((x, 0.0, 0.0)) for x in position.coordinates]
+    state = equations.state(ARRAYS, equations.tree.values(ARRAYS, list(position.coordinates)), jets, 0.0)
+    return {one.id: float(coordinate_of_drive(mechanism, one).value(state)) for one in mechanism.drives}
 
 
 def _kept_drives(mechanism: Mechanism, kept: Mapping[str, tuple[float, float]]) -> tuple[KeptDrive, ...]:

@@ -25,12 +25,14 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     find_equilibria,
     no_equilibrium,
     settled_equilibria,
+    with_states,
 )
+from centrode.dynamics.equilibria.friction_bands import friction_bands
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism, loaded_mechanism
 from centrode.dynamics.equilibria.posed_motions import mode_motion, posed_motion
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
 from centrode.dynamics.equilibria.steady_rotation import steady_rotation
-from centrode.errors import InputError
+from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
@@ -146,14 +148,18 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
             )
         return np.asarray(places[equilibrium - 1])
     if loaded.mobility:
-        begin = loaded.position.coordinates[None]
-        found = settled_equilibria(loaded, approached_positions(loaded, begin))
+        begin = loaded.start[None]
+        near = with_states(loaded, begin) if loaded.states else approached_positions(loaded, begin)
+        found = settled_equilibria(loaded, near)
         if np.isfinite(found[0, 0]):
             return np.asarray(found[0])
     # what says why there is none
     all_found = stable_first(find_equilibria(loaded))
+    if not len(all_found.places) and friction_bands(all_found):
+        what = _("friction alone holds it, and what it holds has no small motions")
+        raise MotionError("", what, _("omit the friction, or let springs or weights hold it"))
     if not len(all_found.places):
-        raise no_equilibrium(all_found.starts)
+        raise no_equilibrium(loaded, all_found.starts)
     return np.asarray(all_found.places[0])
 
 
@@ -174,7 +180,7 @@ def _dataset(
     held: Mapping[str, float],
     speeds: Mapping[str, float],
 ) -> xr.Dataset:
-    values, shapes = motions.eigenvalues, motions.shapes
+    values, shapes = motions.eigenvalues, motions.shapes[:, : loaded.joints]
     poses = posed_motion(loaded, np.zeros(1), motions.place[None])
     variables = {
         name: (dims[1:], one[0], attributes)
@@ -234,7 +240,9 @@ def results_of_modes(mechanism: Mechanism, found: xr.Dataset) -> ModesResults:
     """A dataset of `modes` with the motions that are drawn."""
     held = {name: float(value) for name, value in json.loads(found.attrs["hold"]).items()}
     speeds = {name: float(value) for name, value in json.loads(found.attrs["speed"]).items()}
-    loaded = loaded_mechanism(mechanism.with_drives_held(), {**held, **_begin(mechanism, speeds)})
+    # what controllers do is in the shapes already
+    drawn = mechanism.with_drives_held().model_copy(update={"controllers": ()})
+    loaded = loaded_mechanism(drawn, {**held, **_begin(drawn, speeds)})
     place = found["generalised_coordinate"].values
     shapes = found["mode_amplitude"].values * np.exp(1j * found["mode_phase"].values)
     frequencies = found["damped_frequency"].values
@@ -252,8 +260,8 @@ def _begin(mechanism: Mechanism, speeds: Mapping[str, float]) -> dict[str, float
     """Values of the drives that turn steadily, at which their modes are drawn: those of the initial position."""
     if not speeds:
         return {}
-    loaded = loaded_mechanism(mechanism.with_drives_held())
-    known = loaded.drive_values(loaded.position.coordinates)
+    loaded = loaded_mechanism(mechanism)
+    known = loaded.drive_values(loaded.start)
     return {name: known[name] for name in speeds}
 
 

@@ -36,15 +36,19 @@ AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 def posed_motion(loaded: LoadedMechanism, times: Array, places: Array) -> xr.Dataset:
     """Positions (n, coordinates) at times (n) [s] with the names of a simulation; nothing moves in them."""
+    if not len(places):
+        # of no position there are names all the same
+        return posed_motion(loaded, np.zeros(1), loaded.start[None]).isel(sample=slice(0))
     # accelerations are of no account, and without masses there would be none
-    equations = replace(loaded.equations, masses=_unit_masses(loaded.mechanism, loaded), shafts=(), loads=())
+    masses = _unit_masses(loaded.mechanism, loaded)
+    equations = replace(loaded.equations, masses=masses, shafts=(), loads=(), controls=(), contacts=())
     free = FreeMotion(loaded.mechanism, equations, loaded.position, loaded.mobility, 0)
     setting = MultibodySetting(loaded.mechanism, Simulation(duration=1.0))
     setting.__dict__["free"] = free
     names = MotionNames.of(equations)
     rows = np.zeros((1 + len(names.unknowns), len(times)))
     rows[0] = times
-    rows[1:][names.part(names.coordinates)] = places.T
+    rows[1:][names.part(names.coordinates)] = places[:, : loaded.joints].T
     steps = MotionSteps(rows[:, :1], DURATION, None, 0)
     course = trajectory_of(equations, steps, times, rows[1:], "adaptive", "arrays")
     found = multibody_dataset(setting, course)
@@ -54,8 +58,8 @@ def posed_motion(loaded: LoadedMechanism, times: Array, places: Array) -> xr.Dat
 
 def potential_energy(loaded: LoadedMechanism, places: Array) -> Array:
     """Potential energy of weights and springs (n) [J]."""
-    equations, still = loaded.equations, [np.zeros(len(places))] * loaded.size
-    values = equations.tree.values(ARRAYS, list(places.T))
+    equations, still = loaded.equations, [np.zeros(len(places))] * loaded.joints
+    values = equations.tree.values(ARRAYS, list(places[:, : loaded.joints].T))
     return np.broadcast_to(equations.energies(ARRAYS, values, still, 0.0)[1], len(places)).astype(np.float64)
 
 

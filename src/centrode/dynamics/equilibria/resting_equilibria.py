@@ -25,6 +25,7 @@ from centrode.dynamics.equilibria.equilibrium_search import (
     settled_equilibria,
     stop_values,
     walked_positions,
+    with_states,
 )
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
@@ -129,7 +130,7 @@ def resting_equilibria(loaded: LoadedMechanism, free: Equilibria | None) -> tupl
         for one in _with_closed(loaded, closed, starts, scale):
             if not any(_is_same(loaded, one, other) for other in found):
                 found.append(one)
-    begin = loaded.position.coordinates
+    begin = loaded.start
     return tuple(sorted(found, key=lambda one: float(same_position(loaded, one.place[None], begin)[0])))
 
 
@@ -163,7 +164,9 @@ def _with_closed(
     held.__dict__["rank"] = _rank(held, near)
     if held.mobility != loaded.mobility - len(closed):
         return
-    if held.mobility:
+    if held.states:
+        places = settled_equilibria(held, with_states(held, near))
+    elif held.mobility:
         places = np.concatenate(
             [settled_equilibria(held, near), settled_equilibria(held, approached_positions(held, near[::2]))]
         )
@@ -243,6 +246,8 @@ def _is_allowed(loaded: LoadedMechanism, values: Array, closed: Sequence[tuple[S
     """Whether the closed stops are at their bounds, turns counted, and the others within them."""
     at = {stop.label: bound for stop, bound, _sign in closed}
     for stop, value in zip(loaded.mechanism.stops, values, strict=True):
+        if not stop.is_rigid:
+            continue
         slack = TOUCHING * _unit(loaded, stop)
         low = high = at.get(stop.label)
         if stop.label not in at:

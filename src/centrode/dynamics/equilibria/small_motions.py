@@ -36,6 +36,9 @@ WITHOUT_MASS = 1e-12
 class SmallMotions:
     """Linear equations along the free directions, f of them, of c coordinates.
 
+    The last `states` coordinates and directions are states of controllers: they have no mass, and damping that says how
+    fast they change.
+
     Attributes
     ----------
     place, speeds : (c) the state that small motions depart from [rad or m], and by time [s]
@@ -51,24 +54,25 @@ class SmallMotions:
     mass: Array
     damping: Array
     stiffness: Array
+    states: int = 0
+
+    @property
+    def moving(self) -> int:
+        """Number of directions in which the mechanism moves."""
+        return len(self.mass) - self.states
 
     @cached_property
     def moves_mass(self) -> bool:
         """Whether every free direction moves a mass: without that there are no frequencies."""
-        if not len(self.mass):
+        if not self.moving:
             return False
-        sizes = np.linalg.eigvalsh(self.mass)
+        sizes = np.linalg.eigvalsh(self.mass[: self.moving, : self.moving])
         return bool(sizes[0] > WITHOUT_MASS * max(float(sizes[-1]), 1e-300))
 
     @cached_property
     def _spectrum(self) -> tuple[Complex, Complex]:
         """Eigenvalues s and directions u, those with an imaginary part not below zero; by frequency, then by decay."""
-        count = len(self.mass)
-        factor = scipy.linalg.cho_factor(self.mass)
-        matrix = np.zeros((2 * count, 2 * count))
-        matrix[:count, count:] = np.eye(count)
-        matrix[count:, :count] = -scipy.linalg.cho_solve(factor, self.stiffness)
-        matrix[count:, count:] = -scipy.linalg.cho_solve(factor, self.damping)
+        matrix, count = self._first_order_matrix, self.moving
         values, vectors = np.linalg.eig(matrix)
         scale = float(np.max(np.abs(values), initial=0.0))
         # what neither damps nor grows has a real part of rounding
@@ -78,7 +82,25 @@ class SmallMotions:
         order = sorted(
             kept, key=lambda k: (round(abs(float(values[k].imag)) / max(scale, 1e-300), 12), values[k].real)
         )
-        return values[order], vectors[:count, order].T
+        return values[order], np.concatenate([vectors[:count], vectors[2 * count :]])[:, order].T
+
+    @property
+    def _first_order_matrix(self) -> Array:
+        """A of x' = A x, x being departures and their speeds along the directions, then the states of controllers."""
+        count, whole = self.moving, len(self.mass)
+        factor = scipy.linalg.cho_factor(self.mass[:count, :count])
+        matrix = np.zeros((count + whole, count + whole))
+        matrix[:count, count : 2 * count] = np.eye(count)
+        moved = scipy.linalg.cho_solve(
+            factor, np.hstack([self.stiffness[:count], self.damping[:count, :count]])
+        )
+        own = np.diag(self.damping)[count:, None]
+        changed = np.hstack([self.stiffness[count:], self.damping[count:, :count]]) / own
+        for rows, found in ((slice(count, 2 * count), moved), (slice(2 * count, None), changed)):
+            matrix[rows, :count] = -found[:, :count]
+            matrix[rows, 2 * count :] = -found[:, count:whole]
+            matrix[rows, count : 2 * count] = -found[:, whole:]
+        return matrix
 
     @property
     def eigenvalues(self) -> Complex:
@@ -93,16 +115,21 @@ class SmallMotions:
         if not self.moves_mass:
             return np.zeros((0, len(self.place)), dtype=np.complex128)
         found = self._spectrum[1] @ self.free.T
-        sized = found / self.units
-        greatest = np.argmax(np.round(np.abs(sized) / np.max(np.abs(sized), axis=1)[:, None], 9), axis=1)
-        return np.asarray(found / sized[np.arange(len(sized)), greatest][:, None])
+        # states of controllers are not seen; a mode of these alone moves nothing
+        sized = (found / self.units)[:, : len(self.place) - self.states]
+        sizes = np.max(np.abs(sized), axis=1)
+        still = sizes <= NOTHING * np.max(np.abs(found / self.units), axis=1)
+        greatest = np.argmax(np.round(np.abs(sized) / np.where(still, 1.0, sizes)[:, None], 9), axis=1)
+        scale = np.where(still, 1.0, sized[np.arange(len(sized)), greatest])
+        return np.asarray(np.where(still[:, None], 0.0, found / scale[:, None]))
 
     @cached_property
     def undamped_frequencies(self) -> Array:
         """Angular frequencies [rad/s] without damping, increasing; NaN for a direction that is not driven back."""
         if not self.moves_mass:
             return np.zeros(0)
-        squares = scipy.linalg.eigvals(self.stiffness, self.mass)
+        count = self.moving
+        squares = scipy.linalg.eigvals(self.stiffness[:count, :count], self.mass[:count, :count])
         with np.errstate(invalid="ignore"):
             found = np.where(
                 np.abs(squares.imag) <= ROUNDING * np.abs(squares), np.sqrt(squares.real), np.nan
@@ -112,11 +139,11 @@ class SmallMotions:
     @cached_property
     def stability(self) -> str:
         """One of `STABILITIES`; stable where nothing can move."""
-        if not len(self.mass):
+        if not self.moving:
             return STABLE
         if not self.moves_mass:
             # what moves slowly against friction of any kind goes down the stiffness
-            sizes = np.linalg.eigvals(self.stiffness).real
+            sizes = np.linalg.eigvals(self.stiffness[: self.moving, : self.moving]).real
             rounding = ROUNDING * float(np.max(np.abs(sizes), initial=0.0))
             least = float(np.min(sizes))
             return STABLE if least > rounding else UNSTABLE if least < -rounding else NEUTRAL
@@ -150,6 +177,15 @@ def small_motions(
     mass, damping, stiffness = map(reduced_matrix, (found.mass, found.damping, found.stiffness))
     mass = 0.5 * (mass + mass.transpose(0, 2, 1))
     return tuple(
-        SmallMotions(places[k], moving[k], loaded.units, free[k], mass[k], damping[k], stiffness[k])
+        SmallMotions(
+            places[k],
+            moving[k],
+            loaded.units,
+            free[k],
+            mass[k],
+            damping[k],
+            stiffness[k],
+            len(loaded.states),
+        )
         for k in range(len(places))
     )

@@ -56,10 +56,10 @@ def steady_rotation(loaded: LoadedMechanism) -> SmallMotions:
 
 def _steady_states(loaded: LoadedMechanism) -> Iterator[tuple[Array, Array]]:
     """States of constant speeds from many positions: everything turns with the drive, or as little as can."""
-    angles = np.array([one.kind == "angle" for one in loaded.coordinates])
+    angles = loaded.angles
     constant = (constant_speed_of(one.driven.law) for one in loaded.equations.kept)
     speed = next(found for found in constant if found is not None)
-    begin = loaded.at(loaded.position.coordinates[None])
+    begin = loaded.at(loaded.start[None])
     inertia = np.max(np.abs(begin.mass[0] * np.outer(loaded.units, loaded.units)), initial=0.0)
     heavy = float(inertia) * speed**2 + float(np.max(np.abs(begin.force * loaded.units), initial=0.0))
     units = loaded.equation_units

@@ -462,7 +462,7 @@ class ActionReader:
                 force = strength * (apart if isinstance(along, HalfSquare) else apart / abs(apart))
                 yield self.bodies.host(second), force, ends[1], 0.0
                 yield self.bodies.host(first), -force, ends[0], 0.0
-            case Spin() | Travel() | HingeTurn() | GuideArc() | AngularDistance():
+            case Spin() | HingeTurn() | GuideArc() | AngularDistance() | Travel():
                 along.pulls(self.state)  # says why it acts on no body
             case _:
                 assert_never(along)

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
 from centrode.dynamics.forward_dynamics.joint_openings import JointOpening
 from centrode.dynamics.load_coordinates import (
@@ -28,11 +30,11 @@ from centrode.dynamics.load_coordinates import (
     joint_of_hinge,
     points_of,
 )
-from centrode.dynamics.loads import Constant, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
+from centrode.dynamics.loads import Constant, EnergyClass, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
 from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
-from centrode.model.contacts import MEASURED, MeasuredPart
+from centrode.model.contacts import MEASURED, MeasuredPart, Stop
 from centrode.model.loads import GuideFriction, HingeFriction
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.text_formula import TextFormula, compile_formula
@@ -189,6 +191,11 @@ def coordinate_of_part(mechanism: Mechanism, part: MeasuredPart, where: str) -> 
     return AngularDistance(first, second) if on_sphere else Distance(first, second)
 
 
+def stop_coordinate(mechanism: Mechanism, stop: Stop) -> Coordinate:
+    """What a stop bounds."""
+    return coordinate_of_part(mechanism, stop, f"[[stops]] {stop.label}")
+
+
 def _joint_angle(mechanism: Mechanism, link: str, other: str, where: str) -> Turn | Spin:
     hinge = hinge_of(
         mechanism, link, other, where, _("give relative_to: the link at the other side of its hinge")
@@ -226,7 +233,7 @@ def contacts_of(mechanism: Mechanism, frictions: Iterable[Contact] = ()) -> tupl
         Contact(
             STOP if stop.is_rigid else COMPLIANT,
             stop.label,
-            coordinate_of_part(mechanism, stop, f"[[stops]] {stop.label}"),
+            stop_coordinate(mechanism, stop),
             stop.least,
             stop.most,
             stop.restitution or 0.0,
@@ -324,6 +331,42 @@ class SmoothFriction:
     def __call__(self, now: Any) -> Number:
         slip = now.v if isinstance(self.drift, float) and self.drift == 0.0 else now.v - self.drift
         return -self.viscous * slip - self.quadratic * slip * now.m.abs(slip)
+
+
+@dataclass(frozen=True)
+class StopPush:
+    """What a compliant stop exerts along its coordinate, whether it is closed or not: it pushes and never pulls."""
+
+    least: Number | None
+    most: Number | None
+    stiffness: Number
+    damping: Number
+    uses: frozenset[str] = frozenset("xv")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    depends_on_sense: bool = False
+    energy_class = EnergyClass.STORED
+    by_place = False
+
+    def energy(self, x: Number) -> Number:
+        """Potential energy of its spring [J] at a value of its coordinate."""
+        found: Number = 0.0
+        if self.most is not None:
+            found = found + 0.5 * self.stiffness * np.maximum(x - self.most, 0.0) ** 2
+        if self.least is not None:
+            found = found + 0.5 * self.stiffness * np.maximum(self.least - x, 0.0) ** 2
+        return found
+
+    def __call__(self, now: Any) -> Number:
+        found: Number = 0.0
+        for bound, side in ((self.most, 1.0), (self.least, -1.0)):
+            if bound is None:
+                continue
+            beyond = side * (now.x - bound)
+            push = now.m.max(self.stiffness * beyond + self.damping * (side * now.v), 0.0)
+            # what is open does not damp
+            found = found - side * now.m.where(now.m.less(0.0, beyond), push, 0.0)
+        return found
 
 
 def row_numbers(contacts: Sequence[Contact]) -> tuple[int, ...]:

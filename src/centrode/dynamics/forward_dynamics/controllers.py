@@ -9,11 +9,13 @@ from typing import Any, TypeAlias
 from centrode.dynamics.load_coordinates import Coordinate
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.motors import OF_SPEED, Controller, controller_variables
+from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.text_formula import TextFormula, compile_formula
 
 Number: TypeAlias = Any
 INTEGRAL = "integral of the deviation"
+GAINS = ("proportional", "integral", "derivative", "most")
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,7 @@ class Control:
     label : of results
     drives, measures : along what its output works, and what it measures; None of a signal, and of time alone
     states : names with their values at the start
+    gains : "proportional", "integral", "derivative" and "most", as far as they are given; "target" that is a number
     """
 
     description: Controller
@@ -33,20 +36,28 @@ class Control:
     measures: Coordinate | None
     states: tuple[tuple[str, float], ...]
     formulas: Mapping[str, TextFormula]
+    gains: Mapping[str, Number]
+
+    @property
+    def uses_place(self) -> bool:
+        """Whether the value of what it measures counts, and not its speed alone."""
+        if self.description.value is None:
+            return self.description.of != OF_SPEED
+        return any("q" in formula.used for formula in self.formulas.values())
 
     def output(self, m: Any, given: Mapping[str, Number]) -> Number:
         """Its moment or force at given numbers: t, q, v, its states and outputs of others."""
-        described = self.description
-        if described.value is not None:
+        gains, most = self.gains, self.gains.get("most")
+        if self.description.value is not None:
             size = self._evaluate(m, "value", given)
         else:
             error, rate = self._deviation(m, given)
-            size = (described.proportional or 0.0) * error
-            if described.integral is not None:
-                size = size + described.integral * given[INTEGRAL]
-            if described.derivative is not None:
-                size = size + described.derivative * rate
-        return size if described.most is None else m.max(m.min(size, described.most), -described.most)
+            size = gains.get("proportional", 0.0) * error
+            if "integral" in gains:
+                size = size + gains["integral"] * given[INTEGRAL]
+            if "derivative" in gains:
+                size = size + gains["derivative"] * rate
+        return size if most is None else m.max(m.min(size, most), -most)
 
     def rates(self, m: Any, given: Mapping[str, Number]) -> list[Number]:
         """Rates of its states."""
@@ -60,9 +71,10 @@ class Control:
 
     def _deviation(self, m: Any, given: Mapping[str, Number]) -> tuple[Number, Number]:
         """Target less what follows it, and the rate of that; of a speed no rate is needed."""
-        jets = JetFunctions(m)
-        target = self.formulas["target"](jets, t=Jet((given["t"], 1.0)))
-        value, slope = target.coefficients if isinstance(target, Jet) else (target, 0.0)
+        value, slope = self.gains.get("target"), 0.0
+        if value is None:
+            target = self.formulas["target"](JetFunctions(m), t=Jet((given["t"], 1.0)))
+            value, slope = target.coefficients if isinstance(target, Jet) else (target, 0.0)
         if self.description.of == OF_SPEED:
             return value - given["v"], 0.0
         return value - given["q"], slope - given["v"]
@@ -101,9 +113,14 @@ def _control(
     if one.value is not None:
         texts["value"] = one.value
     formulas = {name: compile_formula(text, known, where) for name, text in texts.items()}
+    gains = {key: getattr(one, key) for key in GAINS if getattr(one, key) is not None}
     states = tuple((name, state.start) for name, state in one.states.items())
     if one.target is not None:
-        formulas["target"] = compile_formula(one.target, ("t",), where)
+        target = compile_formula(one.target, ("t",), where)
+        if target.used:
+            formulas["target"] = target
+        else:
+            gains["target"] = float(target(ARRAYS))
     if one.integral is not None:
         states = ((INTEGRAL, 0.0),)
 
@@ -111,7 +128,13 @@ def _control(
         return None if name is None else coordinate_of(mechanism, mechanism.drive(name))
 
     return Control(
-        one, f"controller {one.name}", along(one.drive), along(one.measures or one.drive), states, formulas
+        one,
+        f"controller {one.name}",
+        along(one.drive),
+        along(one.measures or one.drive),
+        states,
+        formulas,
+        gains,
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.dynamics.forward_dynamics.broken_lines import BrokenLine
-from centrode.dynamics.forward_dynamics.contacts import Contact, JointPressing, SmoothFriction
+from centrode.dynamics.forward_dynamics.contacts import Contact, JointPressing, SmoothFriction, StopPush
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, LoadAlong
 from centrode.dynamics.load_coordinates import Component
 from centrode.dynamics.loads import (
@@ -39,6 +39,10 @@ def map_equations(equations: EquationsOfMotion, function: Function) -> Equations
         weights=tuple(map(function, equations.weights)),
         references=tuple(map(function, equations.references)),
         contacts=tuple(_map_contact(contact, function) for contact in equations.contacts),
+        controls=tuple(
+            replace(control, gains={name: function(x) for name, x in control.gains.items()})
+            for control in equations.controls
+        ),
     )
 
 
@@ -119,8 +123,11 @@ def _map_load(load: LoadAlong, function: Function) -> LoadAlong:
     return replace(load, term=replace(term, coordinate=coordinate, amount=_map_law(term.amount, function)))
 
 
-def _map_law(law: LoadLaw | BrokenLine | SmoothFriction, function: Function) -> Any:
+def _map_law(law: LoadLaw | BrokenLine | SmoothFriction | StopPush, function: Function) -> Any:
     match law:
+        case StopPush():
+            least, most = (None if bound is None else function(bound) for bound in (law.least, law.most))
+            return StopPush(least, most, function(law.stiffness), function(law.damping))
         case BrokenLine():
             return law.map_numbers(function)
         case Constant():

@@ -116,7 +116,7 @@ def refuse_undetermined_presses(equations: EquationsOfMotion, coordinates: Array
             for k, x in opening.rows.items():
                 if k < len(row):
                     row[k] = float(x)
-            if np.max(np.abs(row @ null), initial=0.0) > DETERMINED * np.max(np.abs(null)):
+            if np.max(np.abs(row @ null), initial=0.0) > DETERMINED * np.max(np.abs(null), initial=0.0):
                 label = equations.contacts[number].label
                 what = _("friction at {contact} depends on a reaction that the constraints do not determine")
                 repair = _("omit a redundant constraint, or the friction there")

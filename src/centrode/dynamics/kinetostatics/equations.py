@@ -8,6 +8,7 @@ of that balance, along the sphere as in the plane.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +20,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.load_coordinates import place_of
 from centrode.dynamics.state import State
-from centrode.dynamics.wrenches import NOWHERE, Vector, Wrench, couple, on_frame, on_link, on_point
+from centrode.dynamics.wrenches import NOWHERE, Resultant, Vector, Wrench, couple, on_frame, on_link, on_point
 from centrode.geometry import sphere as space
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.plane import subtract as plane_subtract
@@ -618,10 +619,12 @@ def _where(regular: Mask, matrix: Array) -> Array:
     return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
 
-def _norm(matrix: npt.NDArray[Any]) -> Any:
+def _norm(matrix: Array) -> Array:
+    """The greatest row sum of sizes: row by row, as memory for all sizes at once would be fresh at every call."""
+    ones = np.ones(matrix.shape[-1])
     # one product adds up short rows faster than a sum does
-    sums = np.abs(matrix).reshape(-1, matrix.shape[-1]) @ np.ones(matrix.shape[-1])
-    return sums.reshape(matrix.shape[:-1]).max(axis=-1)
+    sums = (np.abs(matrix[..., row, :]) @ ones for row in range(matrix.shape[-2]))
+    return functools.reduce(np.maximum, sums)
 
 
 def _pseudo(matrix: Array) -> tuple[Array, Array]:
@@ -691,6 +694,11 @@ class ForceSystem:
         fixed = self.system.scheme.structure.mechanism.frame.points
         return [pull for pull in self.all_wrenches if on_frame(pull.body, fixed)]
 
+    @cached_property
+    def frame_resultant(self) -> Resultant:
+        """What acts on the frame, about the origin."""
+        return Resultant.of(self.on_frame, self.system.equilibrium.origin)
+
 
 @dataclass(frozen=True)
 class Kinetostatics:
@@ -734,22 +742,21 @@ class Kinetostatics:
     def inverse(self) -> Inverse:
         """The matrix of the equations, inverted at every position."""
         scheme, unknowns = self.scheme, self.scheme.unknowns
-        matrix = np.zeros((scheme.size, len(unknowns), *self.shape))
-        filled = np.zeros(matrix.shape[:2], dtype=bool)
+        matrix = np.zeros((*self.shape, scheme.size, len(unknowns)))
+        filled = np.zeros(matrix.shape[-2:], dtype=bool)
         for column, unknown in enumerate(unknowns):
-            self._add(matrix[:, column], self.pulls[unknown], filled[:, column])
+            self._add(matrix[..., column], self.pulls[unknown], filled[:, column])
             # forces and moments over the greatest length are of one size, so that the condition number means
             # something
             if self.equilibrium.by_moment(unknown[0]):
-                matrix[:, column] *= self.scale
-        ordered = np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1)))
-        return inverse_of(ordered, scheme.blocks_of(filled))
+                matrix[..., column] *= self.scale
+        return inverse_of(matrix, scheme.blocks_of(filled))
 
     def right_side(self, outer: Iterable[Wrench]) -> Array:
         """Forces and moments [N] on the links, as (equations, 1, n)."""
-        right = np.zeros((self.scheme.size, *self.shape))
+        right = np.zeros((*self.shape, self.scheme.size))
         self._add(right, outer)
-        return right
+        return np.moveaxis(right, -1, 0)
 
     def forces(self, outer: Sequence[Wrench]) -> ForceSystem:
         """Constraint forces that balance what acts on points and links.
@@ -788,11 +795,11 @@ class Kinetostatics:
         return next(pull.force for pull in pulls if pull.body.kind == "point")
 
     def _add(self, column: Array, pulls: Iterable[Wrench], filled: Mask | None = None) -> None:
-        """Add what pulls do to each equation, and mark which these are; the frame has none."""
+        """Add what pulls do to each equation (..., equations), and mark which these are; the frame has none."""
         for pull in pulls:
             for row, value in self.entries(pull):
                 if not _is_zero(value):
-                    column[row] += value
+                    column[..., row] += value
                     if filled is not None:
                         filled[row] = True
 

@@ -59,7 +59,7 @@ from centrode.dynamics.kinetostatics.radial_forces import with_radial_forces
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State
 from centrode.dynamics.steady_motion.steady import solution_of
-from centrode.dynamics.wrenches import Vector, Wrench, components, total
+from centrode.dynamics.wrenches import Resultant, Vector, Wrench, components, plus
 from centrode.errors import CentrodeError, InputError, NotComputedYet, Status
 from centrode.kinematics.motion import (
     Variable,
@@ -77,7 +77,7 @@ from centrode.kinematics.solve import Solved, grid_of, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism, kept_by_mechanism
-from centrode.numerics.expressions import EXPRESSIONS
+from centrode.numerics.expressions import EXPRESSIONS, Node
 from centrode.structure.constraints import Entity
 
 # Reactions at the samples of a motion, as plain arrays with what they come from.
@@ -252,11 +252,8 @@ def totals_of(forces: ForceSystem, inertia: Sequence[InertiaForce]) -> dict[str,
 def frame_totals(forces: ForceSystem, inertia: Sequence[InertiaForce]) -> dict[str, Array]:
     """Forces and moments on the frame: all, and those of inertia alone."""
     samples, origin = forces.system.shape[-1], forces.system.equilibrium.origin
-    shaking = [pull for action in inertia for pull in action.pulls]
-    return {
-        **_sums("frame", forces.on_frame, origin, samples),
-        **_sums("shaking", shaking, origin, samples),
-    }
+    shaking = Resultant.of([pull for action in inertia for pull in action.pulls], origin)
+    return {**_sums("frame", forces.frame_resultant, samples), **_sums("shaking", shaking, samples)}
 
 
 def _moments(moments: Sequence[Vector], axes: int, samples: int) -> Array:
@@ -265,10 +262,10 @@ def _moments(moments: Sequence[Vector], axes: int, samples: int) -> Array:
     return table if axes == 3 else table[:, :, 0]
 
 
-def _sums(name: str, pulls: Sequence[Wrench], origin: Vector, samples: int) -> dict[str, Array]:
-    force, moment = total(pulls, origin)
+def _sums(name: str, all_together: Resultant, samples: int) -> dict[str, Array]:
+    moment = all_together.moment
     turned = columns(moment, samples) if isinstance(moment, tuple) else column(moment, samples)
-    return {f"{name}_force": columns(force, samples), f"{name}_moment": turned}
+    return {f"{name}_force": columns(all_together.force, samples), f"{name}_moment": turned}
 
 
 def joint_moments(found: ReactionSolution, forces: Array) -> Array:
@@ -323,7 +320,7 @@ def body_balance(forces: ForceSystem) -> tuple[Array, Array]:
         if pull.body in sums:
             parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
             # `strict=False`: a pin has two components in the plane, a link three
-            sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
+            sums[pull.body] = tuple(plus(x, y) for x, y in zip(sums[pull.body], parts, strict=False))
         acting += pull.force
         turning += components(pull.moment)
     missing = _greatest_size([x for left in sums.values() for x in left], samples)
@@ -334,12 +331,13 @@ def body_balance(forces: ForceSystem) -> tuple[Array, Array]:
 def _greatest_size(parts: Sequence[Number], samples: int) -> Array:
     """The greatest size (n) of some numbers over the samples, of nodes a node; plain zeros are none."""
     told = [x for x in parts if not (isinstance(x, float) and x == 0.0)]
-    if not told:
-        return np.zeros(samples)
-    table = columns(told, samples)
-    if table.dtype == object:
-        return np.array([functools.reduce(EXPRESSIONS.max, map(EXPRESSIONS.abs, table[0]))], dtype=object)
-    return np.asarray(np.abs(table).max(axis=1))
+    if any(isinstance(x, Node) for x in told):
+        return np.array([functools.reduce(EXPRESSIONS.max, map(EXPRESSIONS.abs, told))], dtype=object)
+    greatest: Array = np.zeros((1, samples))
+    for x in told:
+        np.maximum(greatest, np.abs(x), out=greatest)
+    found: Array = greatest[0]
+    return found
 
 
 def _greater(sizes: Array, others: Array) -> Array:
@@ -353,15 +351,13 @@ def frame_balance(forces: ForceSystem, outer: Sequence[Wrench]) -> tuple[Array, 
     """Residual of the frame (n): what it bears less loads and inertia forces; and the greatest force (n)."""
     scale = forces.system.scale
     samples = forces.system.shape[-1]
-    origin = forces.system.equilibrium.origin
-    (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(outer, origin)
-    short = [x - y for x, y in zip(borne, acting, strict=True)]
-    pairs = zip(components(turned), components(turning), strict=True)
+    borne, acting = forces.frame_resultant, Resultant.of(outer, forces.system.equilibrium.origin)
+    short = [x - y for x, y in zip(borne.force, acting.force, strict=True)]
+    pairs = zip(components(borne.moment), components(acting.moment), strict=True)
     missing = _greatest_size(short, samples)
     missing = _greater(missing, _greatest_size([x - y for x, y in pairs], samples) / scale)
-    pulls = [*forces.on_frame, *outer]
-    size = _greatest_size([x for pull in pulls for x in pull.force], samples)
-    moments = [x for pull in pulls for x in components(pull.moment_about(origin))]
+    size = _greatest_size([x for pull in (*borne.pulls, *acting.pulls) for x in pull.force], samples)
+    moments = [x for moment in (*borne.moments, *acting.moments) for x in components(moment)]
     return missing, _greater(size, _greatest_size(moments, samples) / scale)
 
 

@@ -42,6 +42,8 @@ FARTHEST = 0.3
 INDIFFERENT = 1e-4
 """A multiplier as near to 1 says that a neighbouring motion comes back as well."""
 RANK = 1e-9
+MOVING = 1e-6
+"""Share of the greatest speed above which something moves."""
 LIKE = 0.02
 """States at two events that differ by less, in rad, lengths and shares of the fastest speed, may be of one regime."""
 
@@ -161,7 +163,7 @@ class _RegimeSearch:
         return bool(np.max(self.turned_angles(coordinates), initial=0.0) >= 4.0 * np.pi)
 
     def last_recurrence(self, start: InitialState, run: Trajectory) -> tuple[int, float, float]:
-        """What moves fastest in the longest free flight between two like events, an instant there, and their distance.
+        """What moves fastest in the longest stretch between two like events, an instant there, and their distance.
 
         Events that stops and friction make in like states tell a period where nothing turns.
         """
@@ -176,7 +178,7 @@ class _RegimeSearch:
                 "recurs"
             )
             raise MotionError("[simulation]", what, _("give a longer duration, or keep a drive"))
-        return self._in_free_flight(start, times[earlier:])
+        return self._between_events(start, times[earlier:])
 
     def _latest_alike(
         self, start: InitialState, run: Trajectory, times: Array, candidates: Sequence[int]
@@ -189,14 +191,20 @@ class _RegimeSearch:
         alike = [k for k in candidates if times[k] < times[-1] and max(apart[k], faster[k]) < LIKE]
         return alike[-1] if alike else None
 
-    def _in_free_flight(self, start: InitialState, times: Array) -> tuple[int, float, float]:
-        """Of the longest stretch between events in which nothing is closed or sticks."""
+    def _between_events(self, start: InitialState, times: Array) -> tuple[int, float, float]:
+        """Of the longest stretch between events in which nothing is closed or sticks, if there is one.
+
+        Else of the longest in which something moves: what is held there is held by all motions nearby.
+        """
         middles = 0.5 * (times[1:] + times[:-1])
         there = self.free.integrate(start, float(times[-1]), TOLERANCE, at=middles)
-        lengths = np.where(np.any(there.contact_modes != 0.0, axis=1), 0.0, np.diff(times))
+        speeds = np.max(np.abs(there.speeds) / self.units, axis=1)
+        moving = np.where(speeds > MOVING * np.max(speeds, initial=0.0), np.diff(times), 0.0)
+        free = np.where(np.any(there.contact_modes != 0.0, axis=1), 0.0, moving)
+        lengths = free if np.any(free > 0.0) else moving
         longest = int(np.argmax(lengths))
         if not lengths[longest] > 0.0:
-            what = _("no regime is sought: something is closed or sticks all the time")
+            what = _("no regime is sought: everything is at rest")
             raise MotionError("[simulation]", what, _("look at the events of the simulation"))
         number = int(np.argmax(np.abs(there.speeds[longest]) / self.units))
         return number, float(middles[longest]), float(times[-1] - times[0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import tau
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -241,7 +242,21 @@ def changed_settings(
         raise InputError(
             "[simulation]", _("it is missing"), _('add --driving "20 - 2*v" and --duration "10 s"')
         )
-    return Simulation.for_parameter(mechanism.motion_parameter, **known | given)
+    made = Simulation.for_parameter(mechanism.motion_parameter, **known | given)
+    _check_means_of_scheme(made, given)
+    return made
+
+
+def _check_means_of_scheme(settings: Simulation, given: Mapping[str, Any]) -> None:
+    """Refuse a number of steps, or a tolerance, that the scheme would leave unheeded; a description may hold both."""
+    fixed = settings.scheme == "runge-kutta-4"
+    if fixed and "tolerance" in given:
+        raise InputError(
+            "tolerance", _("fixed steps have no tolerance"), _("take an adaptive scheme, or more steps")
+        )
+    if not fixed and "steps" in given:
+        what = _("an adaptive scheme chooses its steps by the tolerance")
+        raise InputError("steps", what, _("add --scheme runge-kutta-4, or give a tolerance"))
 
 
 def simulation_extent(mechanism: Mechanism, samples: int | None = None, **options: Any) -> tuple[int, float]:

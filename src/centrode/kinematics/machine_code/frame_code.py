@@ -77,6 +77,10 @@ def frame_text(width: int) -> str:
             _call(),
             _centre(),
             _turn(width),
+            _reduce_mesh(),
+            _conditions(),
+            _wind(),
+            _write(),
             _move(),
             _entry(),
         ]
@@ -319,15 +323,11 @@ done:
 }}"""
 
 
-def _move() -> str:
-    """Judge and write: see `FrameAnswer`."""
+def _reduce_mesh() -> str:
+    """Compute the nodes of the mesh, and the least of the first rows and the greatest of the others."""
     return f"""
-define internal i64 @move(ptr %table, i64 %task) {{
+define internal void @reduce_mesh(ptr %table, i64 %rows) {{
 entry:
-{_slot("rows", FrameSlot.ROWS)}
-  %judged = icmp sgt i64 %rows, 0
-  br i1 %judged, label %mesh, label %turning
-mesh:
   call void @gather(ptr %table, i64 {FrameSlot.FOR_MESH}, i64 {FrameSlot.MESH})
   call void @call(ptr %table, i64 {FrameSlot.MESH})
 {_slot("nodes", FrameSlot.MESH + 1)}
@@ -337,7 +337,7 @@ mesh:
 {_slot("reduced", FrameSlot.REDUCED, "ptr")}
   br label %row
 row:
-  %r = phi i64 [ 0, %mesh ], [ %r.next, %row.end ]
+  %r = phi i64 [ 0, %entry ], [ %r.next, %row.end ]
   %offset = mul i64 %r, %stride
   %row.at = getelementptr double, ptr %room, i64 %offset
   %is.least = icmp slt i64 %r, %least
@@ -354,14 +354,24 @@ row.end:
   store double %extreme, ptr %to, align 8
   %r.next = add i64 %r, 1
   %r.more = icmp slt i64 %r.next, %rows
-  br i1 %r.more, label %row, label %conditions
-conditions:
+  br i1 %r.more, label %row, label %done
+done:
+  ret void
+}}"""
+
+
+def _conditions() -> str:
+    """Whether every number of the nodes that has to keep a sign keeps it, by its least and greatest values."""
+    return f"""
+define internal i1 @conditions_hold(ptr %table) {{
+entry:
+{_slot("reduced", FrameSlot.REDUCED, "ptr")}
 {_slot("pairs", FrameSlot.CONDITIONS, "ptr")}
-{_slot("pair.count", FrameSlot.CONDITIONS + 1)}
-  %some = icmp sgt i64 %pair.count, 0
-  br i1 %some, label %condition, label %turning
+{_slot("count", FrameSlot.CONDITIONS + 1)}
+  %some = icmp sgt i64 %count, 0
+  br i1 %some, label %condition, label %hold
 condition:
-  %c = phi i64 [ 0, %conditions ], [ %c.next, %condition.met ]
+  %c = phi i64 [ 0, %entry ], [ %c.next, %condition.met ]
   %c.first = mul i64 %c, 2
   %c.second = add i64 %c.first, 1
   %first.at = getelementptr i64, ptr %pairs, i64 %c.first
@@ -375,67 +385,114 @@ condition:
 otherwise:
   ; a number that may be negative throughout: the place of its greatest, else none
   %may = icmp sge i64 %second, 0
-  br i1 %may, label %negative, label %not.clear
+  br i1 %may, label %negative, label %broken
 negative:
   %b.at = getelementptr double, ptr %reduced, i64 %second
   %b = load double, ptr %b.at, align 8
   %below = fcmp olt double %b, 0.0
-  br i1 %below, label %condition.met, label %not.clear
+  br i1 %below, label %condition.met, label %broken
 condition.met:
   %c.next = add i64 %c, 1
-  %c.more = icmp slt i64 %c.next, %pair.count
-  br i1 %c.more, label %condition, label %turning
-turning:
-{_slot("links", FrameSlot.LINKS)}
-  %turns = icmp sgt i64 %links, 0
-  br i1 %turns, label %sparse, label %judged.nodes
-sparse:
+  %c.more = icmp slt i64 %c.next, %count
+  br i1 %c.more, label %condition, label %hold
+hold:
+  ret i1 true
+broken:
+  ret i1 false
+}}"""
+
+
+def _wind() -> str:
+    """Compute the nodes that tell turns, and the centre of every link's angle; whether all are known."""
+    return f"""
+define internal i1 @wind_links(ptr %table, i64 %links) {{
+entry:
   call void @gather(ptr %table, i64 {FrameSlot.FOR_SPARSE}, i64 {FrameSlot.SPARSE})
   call void @call(ptr %table, i64 {FrameSlot.SPARSE})
-{_slot("sparse.count", FrameSlot.SPARSE + 1)}
-{_slot("sparse.room", FrameSlot.SPARSE + 11, "ptr")}
-{_slot("sparse.stride", FrameSlot.SPARSE + 12)}
+{_slot("count", FrameSlot.SPARSE + 1)}
+{_slot("room", FrameSlot.SPARSE + 11, "ptr")}
+{_slot("stride", FrameSlot.SPARSE + 12)}
 {_slot("start", FrameSlot.START)}
 {_slot("initial", FrameSlot.AT_START, "ptr")}
 {_slot("wound", FrameSlot.WOUND, "ptr")}
 {_slot("centres", FrameSlot.CENTRES, "ptr")}
   br label %link
 link:
-  %l = phi i64 [ 0, %sparse ], [ %l.next, %link.met ]
-  %raw.offset = mul i64 %l, %sparse.stride
-  %raw = getelementptr double, ptr %sparse.room, i64 %raw.offset
-  %wound.offset = mul i64 %l, %sparse.count
+  %l = phi i64 [ 0, %entry ], [ %l.next, %link.met ]
+  %raw.offset = mul i64 %l, %stride
+  %raw = getelementptr double, ptr %room, i64 %raw.offset
+  %wound.offset = mul i64 %l, %count
   %wound.row = getelementptr double, ptr %wound, i64 %wound.offset
   %angle.at = getelementptr double, ptr %initial, i64 %l
   %angle = load double, ptr %angle.at, align 8
-  %found = call double @centre(ptr %raw, ptr %wound.row, i64 %sparse.count, i64 %start, double %angle)
+  %found = call double @centre(ptr %raw, ptr %wound.row, i64 %count, i64 %start, double %angle)
   %centre.to = getelementptr double, ptr %centres, i64 %l
   store double %found, ptr %centre.to, align 8
   %is.known = fcmp ord double %found, %found
-  br i1 %is.known, label %link.met, label %windings
+  br i1 %is.known, label %link.met, label %otherwise
 link.met:
   %l.next = add i64 %l, 1
   %l.more = icmp slt i64 %l.next, %links
-  br i1 %l.more, label %link, label %judged.nodes
-judged.nodes:
-  %only = icmp eq i64 %task, {Task.JUDGE}
-  br i1 %only, label %clear, label %samples
-samples:
+  br i1 %l.more, label %link, label %known
+known:
+  ret i1 true
+otherwise:
+  ret i1 false
+}}"""
+
+
+def _write() -> str:
+    """Write the samples; whether all of them close, with radicands above zero where these are looked at."""
+    return f"""
+define internal i1 @write_samples(ptr %table) {{
+entry:
   call void @gather(ptr %table, i64 {FrameSlot.FOR_SAMPLES}, i64 {FrameSlot.SAMPLES})
   call void @call(ptr %table, i64 {FrameSlot.SAMPLES})
-{_slot("sample.count", FrameSlot.SAMPLES + 1)}
+{_slot("count", FrameSlot.SAMPLES + 1)}
 {_slot("residual", FrameSlot.RESIDUAL, "ptr")}
-  %worst = call double @greatest(ptr %residual, i64 %sample.count)
+  %worst = call double @greatest(ptr %residual, i64 %count)
   %closes = fcmp ole double %worst, {_number(0.5 * CLOSED)}
-  br i1 %closes, label %closed, label %not.clear
+  br i1 %closes, label %closed, label %open
 closed:
 {_slot("slack", FrameSlot.SLACK, "ptr")}
   %no.slack = icmp eq ptr %slack, null
   br i1 %no.slack, label %clear, label %judge.slack
 judge.slack:
-  %least.slack = call double @least(ptr %slack, i64 %sample.count)
+  %least.slack = call double @least(ptr %slack, i64 %count)
   %enough = fcmp ogt double %least.slack, 0.0
-  br i1 %enough, label %clear, label %not.clear
+  ret i1 %enough
+clear:
+  ret i1 true
+open:
+  ret i1 false
+}}"""
+
+
+def _move() -> str:
+    """Judge by the nodes, wind the links, write the samples, as far as the table has each: see `FrameAnswer`."""
+    return f"""
+define internal i64 @move(ptr %table, i64 %task) {{
+entry:
+{_slot("rows", FrameSlot.ROWS)}
+  %judges = icmp sgt i64 %rows, 0
+  br i1 %judges, label %judge, label %turning
+judge:
+  call void @reduce_mesh(ptr %table, i64 %rows)
+  %hold = call i1 @conditions_hold(ptr %table)
+  br i1 %hold, label %turning, label %not.clear
+turning:
+{_slot("links", FrameSlot.LINKS)}
+  %turns = icmp sgt i64 %links, 0
+  br i1 %turns, label %wind, label %judged
+wind:
+  %wound = call i1 @wind_links(ptr %table, i64 %links)
+  br i1 %wound, label %judged, label %windings
+judged:
+  %only = icmp eq i64 %task, {Task.JUDGE}
+  br i1 %only, label %clear, label %samples
+samples:
+  %closed = call i1 @write_samples(ptr %table)
+  br i1 %closed, label %clear, label %not.clear
 clear:
   ret i64 {FrameAnswer.CLEAR}
 windings:

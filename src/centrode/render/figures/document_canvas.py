@@ -152,14 +152,15 @@ class DocumentCanvas(FigureCanvasSVG):
         dpi = figure.dpi
         figure.dpi = self.fixed_dpi
         width, height = figure.get_size_inches()
-        text = io.TextIOWrapper(filename, encoding="utf-8", newline="\n", write_through=True)
+        # a figure is written in some thousand pieces: each would be encoded by itself
+        text = io.StringIO(newline="\n")
         size = width * self.fixed_dpi, height * self.fixed_dpi
         inner = DocumentRenderer(*size, text, image_dpi=dpi, metadata=metadata)
         mixed: Any = MixedModeRenderer
         renderer = mixed(figure, width, height, dpi, inner, bbox_inches_restore=bbox_inches_restore)
         figure.draw(renderer)
         renderer.finalize()
-        text.detach()
+        filename.write(text.getvalue().encode())
 
 
 class MeasuringRenderer(RendererAgg):

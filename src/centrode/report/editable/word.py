@@ -348,87 +348,97 @@ TWIPS = 1440 / 25.4
 
 def styles_of(standard: Standard, is_note: bool) -> Mapping[str, str]:
     """Styles by their names inside of the document, in place of pandoc's: of a standard, and of notes."""
-    style = page_style(standard)
+    styles = dict(STYLES)
+    if standard != "plain":
+        styles |= _standard_styles(standard)
+    if is_note:
+        styles |= _note_styles(standard, styles)
+    return styles
+
+
+def _standard_styles(standard: Standard) -> dict[str, str]:
+    """Text, headings, captions and tables as a standard has them."""
+    style, styles = page_style(standard), STYLES
+    size = _size(style.size)
     indent = f'<w:ind w:firstLine="{style.indent * TWIPS:.0f}"/>'
     spaced = (
         f'<w:spacing w:before="0" w:after="0" w:line="360" w:lineRule="auto"/>{indent}<w:jc w:val="both"/>'
     )
+    return {
+        "BodyText": _style("BodyText", "Body Text", "Normal", spaced, size),
+        "Compact": _style("Compact", "Compact", "Normal", _spacing(1, 1), size, own=True),
+        "Title": _style("Title", "Title", "Normal", f"{_spacing(12, 12)}{CENTRE}", f"<w:b/>{_size(18)}"),
+        "TOCHeading": styles["TOCHeading"]
+        .replace("<w:keepNext/>", "<w:keepNext/><w:pageBreakBefore/>")
+        .replace("</w:pPr>", f"{CENTRE}</w:pPr>")
+        .replace(_size(16), f"<w:caps/>{_size(style.size)}"),
+        "Caption": _style("Caption", "caption", "Normal", f"<w:keepLines/>{_spacing(4, 8)}{CENTRE}", size),
+        "ImageCaption": _style("ImageCaption", "Image Caption", "Caption", "", "", own=True),
+        "TableCaption": _style(
+            "TableCaption", TABLE_CAPTION, "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
+        ),
+        "Heading1": _heading(1, style.size, 12)
+        .replace("<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>")
+        .replace("<w:b/>", "<w:b/><w:caps/>" if style.capital_parts else "<w:b/>"),
+        "Heading2": _heading(2, style.size, 12),
+        "Heading3": _heading(3, style.size, 12),
+        "Table": styles["Table"]
+        .replace(RULES, GRID)
+        .replace(SHADE, "")
+        .replace(_size(9), _size(style.tables[-1])),
+    }
+
+
+def _note_styles(standard: Standard, styles: Mapping[str, str]) -> dict[str, str]:
+    """Elements of a note that are no chapters, and the lines of its title page; `styles` are those of its text."""
+    style = page_style(standard)
     size, bold = _size(style.size), f"<w:b/>{_size(style.size)}"
-    styles = dict(STYLES)
     new_page = "<w:pageBreakBefore/>" if standard != "plain" else ""
-    if standard != "plain":
-        styles |= {
-            "BodyText": _style("BodyText", "Body Text", "Normal", spaced, size),
-            "Compact": _style("Compact", "Compact", "Normal", _spacing(1, 1), size, own=True),
-            "Title": _style("Title", "Title", "Normal", f"{_spacing(12, 12)}{CENTRE}", f"<w:b/>{_size(18)}"),
-            "TOCHeading": styles["TOCHeading"]
-            .replace("<w:keepNext/>", "<w:keepNext/><w:pageBreakBefore/>")
-            .replace("</w:pPr>", f"{CENTRE}</w:pPr>")
-            .replace(_size(16), f"<w:caps/>{_size(style.size)}"),
-            "Caption": _style(
-                "Caption", "caption", "Normal", f"<w:keepLines/>{_spacing(4, 8)}{CENTRE}", size
-            ),
-            "ImageCaption": _style("ImageCaption", "Image Caption", "Caption", "", "", own=True),
-            "TableCaption": _style(
-                "TableCaption", TABLE_CAPTION, "Caption", '<w:keepNext/><w:jc w:val="left"/>', "", own=True
-            ),
-            "Heading1": _heading(1, style.size, 12)
-            .replace("<w:keepLines/>", "<w:keepLines/><w:pageBreakBefore/>")
-            .replace("<w:b/>", "<w:b/><w:caps/>" if style.capital_parts else "<w:b/>"),
-            "Heading2": _heading(2, style.size, 12),
-            "Heading3": _heading(3, style.size, 12),
-            "Table": styles["Table"]
-            .replace(RULES, GRID)
-            .replace(SHADE, "")
-            .replace(_size(9), _size(style.tables[-1])),
-        }
-    if is_note:
-        centred = f"{new_page}{_spacing(0, 12)}{CENTRE}"
-        big = bold.replace("<w:b/>", "<w:b/><w:caps/>") if new_page else f"<w:b/>{_size(16)}"
-        before = {COVER_WORK: 130, COVER_PEOPLE: 12, COVER_FOOT: 110}
-        styles |= {
-            "Heading3": styles.get("Heading3", _heading(3, 11, 12)),
-            "Element": _style(
-                "Element",
-                ELEMENT,
-                "Normal",
-                f'<w:keepNext/>{centred}<w:outlineLvl w:val="0"/>',
-                big,
-                own=True,
-            ),
-            "ElementFront": _style(
-                "ElementFront", ELEMENT_FRONT, "Normal", f"<w:keepNext/>{centred}", big, own=True
-            ),
-            "ElementSection": _style(
-                "ElementSection", ELEMENT_SECTION, "Normal", f"<w:keepNext/>{_spacing(12, 6)}", bold, own=True
-            ),
-            "Cover": _style("Cover", COVER, "Normal", f"{_spacing(0, 6)}{CENTRE}", size, own=True),
-            "CoverWork": _style(
-                "CoverWork",
-                COVER_WORK,
-                "Normal",
-                f"{_spacing(before[COVER_WORK], 6)}{CENTRE}",
-                bold,
-                own=True,
-            ),
-            "CoverPeople": _style(
-                "CoverPeople",
-                COVER_PEOPLE,
-                "Normal",
-                f'{_spacing(before[COVER_PEOPLE], 6)}<w:ind w:left="4536"/>',
-                size,
-                own=True,
-            ),
-            "CoverFoot": _style(
-                "CoverFoot",
-                COVER_FOOT,
-                "Normal",
-                f"{_spacing(before[COVER_FOOT], 0)}{CENTRE}",
-                size,
-                own=True,
-            ),
-        }
-    return styles
+    centred = f"{new_page}{_spacing(0, 12)}{CENTRE}"
+    big = bold.replace("<w:b/>", "<w:b/><w:caps/>") if new_page else f"<w:b/>{_size(16)}"
+    before = {COVER_WORK: 130, COVER_PEOPLE: 12, COVER_FOOT: 110}
+    return {
+        "Heading3": styles.get("Heading3", _heading(3, 11, 12)),
+        "Element": _style(
+            "Element",
+            ELEMENT,
+            "Normal",
+            f'<w:keepNext/>{centred}<w:outlineLvl w:val="0"/>',
+            big,
+            own=True,
+        ),
+        "ElementFront": _style(
+            "ElementFront", ELEMENT_FRONT, "Normal", f"<w:keepNext/>{centred}", big, own=True
+        ),
+        "ElementSection": _style(
+            "ElementSection", ELEMENT_SECTION, "Normal", f"<w:keepNext/>{_spacing(12, 6)}", bold, own=True
+        ),
+        "Cover": _style("Cover", COVER, "Normal", f"{_spacing(0, 6)}{CENTRE}", size, own=True),
+        "CoverWork": _style(
+            "CoverWork",
+            COVER_WORK,
+            "Normal",
+            f"{_spacing(before[COVER_WORK], 6)}{CENTRE}",
+            bold,
+            own=True,
+        ),
+        "CoverPeople": _style(
+            "CoverPeople",
+            COVER_PEOPLE,
+            "Normal",
+            f'{_spacing(before[COVER_PEOPLE], 6)}<w:ind w:left="4536"/>',
+            size,
+            own=True,
+        ),
+        "CoverFoot": _style(
+            "CoverFoot",
+            COVER_FOOT,
+            "Normal",
+            f"{_spacing(before[COVER_FOOT], 0)}{CENTRE}",
+            size,
+            own=True,
+        ),
+    }
 
 
 def page_of(standard: Standard) -> str:

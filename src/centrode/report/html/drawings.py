@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from dataclasses import dataclass, field
 from itertools import groupby
@@ -34,6 +35,8 @@ DECIMALS = 2
 """Of coordinates in a figure, in 1/72 inch."""
 
 
+KEPT_LETTERS = 1024
+"""Outlines of letters that are kept: most figures of a page have the same ones."""
 LETTER_STEP = re.compile(r"\s*([A-Za-z])\s*")
 LEAST_CLIPPED = 2
 """Elements for which a group is shorter than what they say themselves."""
@@ -146,10 +149,15 @@ class Drawings:
 
     def _letter(self, path: Xml.Element) -> str:
         """Name of a shared outline; the same letter of two figures is one."""
-        own = {key: " ".join(path.get(key, "").split()) for key in ("d", "transform")}
-        own["d"] = LETTER_STEP.sub(r"\1", own["d"])
-        drawn = _written(Xml.Element("path", {k: v for k, v in own.items() if v}))
+        drawn = _drawn_letter(path.get("d", ""), path.get("transform", ""))
         return self.letters.setdefault(drawn, f"g{len(self.letters)}")
+
+
+@functools.lru_cache(KEPT_LETTERS)
+def _drawn_letter(outline: str, transform: str) -> str:
+    """The outline of a letter as an element, without blanks that say nothing."""
+    own = {"d": LETTER_STEP.sub(r"\1", " ".join(outline.split())), "transform": " ".join(transform.split())}
+    return _written(Xml.Element("path", {key: value for key, value in own.items() if value}))
 
 
 def _size(text: str | None) -> str:

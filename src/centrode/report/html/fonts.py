@@ -35,7 +35,8 @@ def cut_font(letters: frozenset[str], source: str | Path = FONT) -> bytes:
     options.layout_features = FEATURES
     options.name_IDs = NAMES
     options.hinting = False
-    font = TTFont(source, recalcTimestamp=False)
+    # lazy: of most tables only what these letters need is read
+    font = TTFont(source, recalcTimestamp=False, lazy=True)
     cut = subset.Subsetter(options)
     cut.populate(unicodes=sorted(map(ord, letters)))
     cut.subset(font)
