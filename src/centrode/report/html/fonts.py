@@ -35,14 +35,14 @@ def cut_font(letters: frozenset[str], source: str | Path = FONT) -> bytes:
     options.layout_features = FEATURES
     options.name_IDs = NAMES
     options.hinting = False
-    # lazy: of most tables only what these letters need is read
-    font = TTFont(source, recalcTimestamp=False, lazy=True)
-    cut = subset.Subsetter(options)
-    cut.populate(unicodes=sorted(map(ord, letters)))
-    cut.subset(font)
-    font.flavor = "woff"
     stream = io.BytesIO()
-    font.save(stream)
+    # lazy: of most tables only what these letters need is read, so the file stays open until the font is closed
+    with TTFont(source, recalcTimestamp=False, lazy=True) as font:
+        cut = subset.Subsetter(options)
+        cut.populate(unicodes=sorted(map(ord, letters)))
+        cut.subset(font)
+        font.flavor = "woff"
+        font.save(stream)
     return stream.getvalue()
 
 
