@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import unicodedata
 from pathlib import Path
@@ -30,6 +31,14 @@ def test_it_is_a_mathematical_font(font: TTFont) -> None:
     assert font["MATH"].table.MathConstants is not None
     grows = font["MATH"].table.MathVariants.VertGlyphCoverage.glyphs
     assert {font.getBestCmap()[ord(sign)] for sign in "()[]|√"} <= set(grows)
+
+
+def test_the_font_is_closed(recwarn: pytest.WarningsRecorder) -> None:
+    """It is read lazily; a file left open is complained of by whatever test collects it."""
+    cut_font.cache_clear()
+    cut_font(frozenset("ab"))
+    gc.collect()
+    assert [one for one in recwarn if issubclass(one.category, ResourceWarning)] == []
 
 
 def test_a_page_holds_its_own_letters_and_no_others(font: TTFont) -> None:

@@ -35,11 +35,11 @@ def cut_font(letters: frozenset[str], source: str | Path = FONT) -> bytes:
     options.layout_features = FEATURES
     options.name_IDs = NAMES
     options.hinting = False
-    cut = subset.Subsetter(options)
-    cut.populate(unicodes=sorted(map(ord, letters)))
     stream = io.BytesIO()
-    # lazy: of most tables only what these letters need is read, from a file that stays open as long
+    # lazy: of most tables only what these letters need is read, so the file stays open until the font is closed
     with TTFont(source, recalcTimestamp=False, lazy=True) as font:
+        cut = subset.Subsetter(options)
+        cut.populate(unicodes=sorted(map(ord, letters)))
         cut.subset(font)
         font.flavor = "woff"
         font.save(stream)
