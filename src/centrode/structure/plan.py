@@ -28,7 +28,7 @@ from centrode.structure.constraints import (
     is_drive,
     unknowns_of,
 )
-from centrode.structure.dimensions import Dimensions, dimensions_of
+from centrode.structure.dimensions import SPACES, Dimensions, dimensions_of
 from centrode.structure.gearing import shares_of
 from centrode.structure.groups import (
     Aim,
@@ -523,7 +523,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
     for drive in mechanism.drives:
         drive.check_law()
     dimensions = dimensions_of(mechanism)
-    _refuse_what_the_space_lacks(mechanism, dimensions.space)
+    refuse_what_the_space_lacks(mechanism)
     constraints = constraints_of(mechanism)
     unknowns = unknowns_of(mechanism)
     form = Form(
@@ -618,7 +618,9 @@ def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constrai
     return kept
 
 
-def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
+def refuse_what_the_space_lacks(mechanism: Mechanism) -> None:
+    """Raise NotComputedYet for guides with a link of their own, rolling and cylinders on the sphere."""
+    space = SPACES[mechanism.space]
     guided = next((guide.id for guide in mechanism.guides if guide.link is not None), None)
     distance = any(drive.kind == "distance" for drive in mechanism.drives)
     asked = [

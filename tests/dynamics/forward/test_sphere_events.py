@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import centrode as ct
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 
 Array = npt.NDArray[np.float64]
 G, RADIUS, MASS, ARC = 9.81, 0.4, 1.3, math.pi / 3
@@ -324,3 +324,11 @@ def test_friction_in_a_hinge_without_an_angle_is_that_of_the_reduced_equation_an
 def test_what_means_nothing_on_the_sphere_is_named(part: dict[str, object], words: str) -> None:
     with pytest.raises(InputError, match=words):
         run_of(ct.Mechanism(**(TWO_ARCS | {"stops": [part]})), 0.1)
+
+
+def test_a_guide_with_a_link_of_its_own_is_refused_by_name() -> None:
+    shoe = {"points": {"A": [0, 0]}, "mass": 0.5}
+    guided = pendulum()
+    parts = {"guides": [{"point": "A", "on": "frame", "pole": "X", "radius": ARC, "link": "shoe"}]}
+    with pytest.raises(NotComputedYet, match=r"\[\[guides\]\] A, link: it is not computed on the sphere"):
+        run_of(pendulum(links={"XA": guided.links["XA"], "shoe": shoe}, **parts), 0.1)

@@ -38,6 +38,7 @@ from centrode.structure.constraints import (
     is_drive,
 )
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.plan import refuse_what_the_space_lacks
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -288,8 +289,10 @@ class SpanningTree:
 def spanning_tree_of(mechanism: Mechanism) -> SpanningTree:
     """The spanning tree of a mechanism, as low as it can be.
 
-    Raises NotComputedYet for what has no coordinates: points of the sphere that hang on nothing.
+    Raises NotComputedYet for what has no coordinates: points of the sphere that hang on nothing, and what is not
+    computed there.
     """
+    refuse_what_the_space_lacks(mechanism)
     builder = _Builder(mechanism)
     builder.grow()
     constraints = [c for c in constraints_of(mechanism) if not is_drive(c)]
