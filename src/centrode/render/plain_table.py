@@ -28,7 +28,7 @@ def aligned_text(
     lines = [list(header), *rows] if header else list(rows)
     widths = [max(width_of(cell) for cell in column) for column in zip(*lines, strict=True)]
     if width is not None:
-        widths = _narrowed(widths, lines, width)
+        widths = _narrow_widths(widths, lines, width)
         lines = [
             line
             for number, row in enumerate(lines)
@@ -45,7 +45,7 @@ def aligned_text(
     return "\n".join(texts)
 
 
-def _narrowed(widths: Sequence[int], rows: Sequence[Sequence[str]], width: int) -> list[int]:
+def _narrow_widths(widths: Sequence[int], rows: Sequence[Sequence[str]], width: int) -> list[int]:
     """Widths of columns that a line holds: the widest give way, none below its longest word."""
     narrowed = list(widths)
     least = [max(_longest_word(cell) for cell in column) for column in zip(*rows, strict=True)]

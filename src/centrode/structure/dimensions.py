@@ -35,12 +35,9 @@ def references_of(
     ends: Mapping[str, tuple[str, ...]],
 ) -> dict[str, tuple[Any, ...]]:
     """Of driven links and those of gears: ends of the own arc, and of the reference arc in the base's axes."""
-    references = {}
-    for link, body in measured_on(mechanism).items():
-        # the angle lies between the own arc and the arc from the same pivot to the end of the reference
-        pivot, second = list(local[link])[:2]
-        base = frame if body == FRAME else local[body]
-        references[link] = (local[link][pivot], local[link][second], base[pivot], base[ends[link][0]])
+    references = {
+        link: reference_arcs(link, body, frame, local, ends) for link, body in measured_on(mechanism).items()
+    }
     for drive in mechanism.drives:
         if drive.link is None:
             continue
@@ -60,6 +57,16 @@ def references_of(
         own = local[drive.link]
         references[drive.link] = (own[pivot], own[second], base[pivot], base[towards])
     return references
+
+
+def reference_arcs(
+    link: str, body: str, frame: Local, local: Mapping[str, Local], ends: Mapping[str, tuple[str, ...]]
+) -> tuple[Any, ...]:
+    """Ends of a link's own arc in its axes, and of its reference arc in the axes of the body that carries it."""
+    # the angle lies between the own arc and the arc from the same pivot to the end of the reference
+    pivot, second = list(local[link])[:2]
+    base = frame if body == FRAME else local[body]
+    return local[link][pivot], local[link][second], base[pivot], base[ends[link][0]]
 
 
 Number: TypeAlias = Any

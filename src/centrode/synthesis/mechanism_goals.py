@@ -144,14 +144,14 @@ def _body_goal(wanted: Synthesis) -> MechanismGoal:
             parts.append(targets.arm * (np.unwrap(angle) if turn == "angle" and angle.ndim == 1 else angle))
         return np.stack(parts, axis=1)
 
-    def given(moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array, Array]:
+    def misses_at_values(moved: Solver, values: Numbers, by: Numbers) -> tuple[Array, Array, Array]:
         missed = targets.misses(rows_of(values, ("x", "y"), "angle"))
         slopes = rows_of(by, ("x", "y"), "angle")
         return missed.ravel(), slopes.reshape(missed.size, -1), moved.parameter
 
     if wanted.timing == "given":
         outputs = {name: output for name, output in outputs.items() if name in ("x", "y", "angle")}
-        return MechanismGoal(outputs, times, size, given)
+        return MechanismGoal(outputs, times, size, misses_at_values)
 
     def motion_of(moved: Solver, values: Numbers) -> SampledMotion:
         pace = moved.time[1] - moved.time[0]

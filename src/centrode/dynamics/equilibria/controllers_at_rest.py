@@ -87,15 +87,17 @@ def _with_needed_states(control: Control) -> Control:
     if control.description.value is None:
         needed = set(states) if control.gains.get("integral") else set()
     else:
-        needed = _reached(control.formulas, control.formulas["value"].used, states)
+        needed = _states_behind(control.formulas, control.formulas["value"].used, states)
     kept = tuple(one for one in control.states if one[0] in needed)
     formulas = {name: one for name, one in control.formulas.items() if name not in states or name in needed}
     gains = {name: x for name, x in control.gains.items() if name != "integral" or INTEGRAL in needed}
     return replace(control, states=kept, formulas=formulas, gains=gains)
 
 
-def _reached(formulas: Mapping[str, TextFormula], used: Collection[str], states: Sequence[str]) -> set[str]:
-    """States that formulas use, and those that their rates use."""
+def _states_behind(
+    formulas: Mapping[str, TextFormula], used: Collection[str], states: Sequence[str]
+) -> set[str]:
+    """States that an output uses, and those on which their rates depend."""
     found, left = set[str](), set(used) & set(states)
     while left:
         name = left.pop()

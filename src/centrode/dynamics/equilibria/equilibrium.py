@@ -39,7 +39,8 @@ from centrode.dynamics.equilibria.small_motions import (
     SmallMotions,
     small_motions,
 )
-from centrode.dynamics.load_coordinates import Turn
+from centrode.dynamics.forward_dynamics.contacts import stop_coordinate
+from centrode.dynamics.load_coordinates import is_angular
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
@@ -386,9 +387,7 @@ def _controllers(
         return {}
     coordinates["controller"] = np.array([one.description.name for one in controls], dtype=object)
     found = vocabulary_variable("controller_output", ("equilibrium", "controller"), loaded.at(places).output)
-    units = [
-        "N m" if isinstance(one.drives, Turn) else "N" if one.drives is not None else "1" for one in controls
-    ]
+    units = ["1" if one.drives is None else "N m" if is_angular(one.drives) else "N" for one in controls]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
     return {"controller_output": found}
 
@@ -404,7 +403,7 @@ def _stop_forces(
     for row, one in zip(forces[free:], resting, strict=True):
         row += [one.forces.get(stop.label, 0.0) for stop in stops]
     found = vocabulary_variable("restraint_force", ("equilibrium", "contact"), forces)
-    units = ["N" if stop.link is None else "N m" for stop in stops]
+    units = ["N m" if is_angular(stop_coordinate(description, stop)) else "N" for stop in stops]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
     return found
 

@@ -151,7 +151,7 @@ def _starts_on(curve: ConfigurationCurve | None) -> Array:
     turns = np.flatnonzero((here < 0.0) != (there < 0.0))
     if has_kinks(curve.loaded):
         # from beside a kink Newton's method sees another stiffness than that where the force vanishes
-        starts += list(_halved(curve, turns))
+        starts += list(_places_by_halving(curve, turns))
     else:
         share = (here / np.where(here == there, 1.0, here - there))[turns, None]
         starts += list(curve.places[turns] + share * (curve.places[turns + 1] - curve.places[turns]))
@@ -182,7 +182,7 @@ def has_kinks(loaded: LoadedMechanism) -> bool:
     return any(not stop.is_rigid for stop in stops) or any("most" in one.gains for one in controls)
 
 
-def _halved(curve: ConfigurationCurve, turns: npt.NDArray[np.intp]) -> Array:
+def _places_by_halving(curve: ConfigurationCurve, turns: npt.NDArray[np.intp]) -> Array:
     """Positions (turns, coordinates) of a curve where the force behind each of some places vanishes, by halving."""
     first, last = curve.places[turns], curve.places[turns + 1]
     sign = np.sign(curve.force[turns])

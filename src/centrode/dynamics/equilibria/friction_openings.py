@@ -1,4 +1,4 @@
-"""What contacts of friction act along at rest, and what openings of their joints ask for, as a graph."""
+"""Directions of contacts with friction at rest, and equations of the openings of their joints, as a graph."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from centrode.numerics.graphs import Graph
 
 
 def graph_of_openings(equations: EquationsOfMotion, states: int, time: str) -> Graph:
-    """What contacts act along, and what an opening of each pressed joint asks for.
+    """Coordinates along which contacts act, and force, mass and rows of the openings of pressed joints.
 
     Parameters
     ----------

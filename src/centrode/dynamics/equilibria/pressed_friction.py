@@ -11,6 +11,7 @@ with Unilateral Contacts, 1996, chapter 6.)
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -25,6 +26,8 @@ from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
+LoadSharing: TypeAlias = Callable[[Array], tuple[Array, Array]]
+"""Forces of friction (n, k) -> forces that share the load as these allow (n, k), and what they can hold (n)."""
 
 MOST_STEPS, SETTLED = 60, 1e-13
 """Steps of Newton's method for forces of friction, and share of the load at which they have settled."""
@@ -73,7 +76,7 @@ class PressedJoints:
         """What friction can hold (n) of a load (n) along free directions (n, coordinates), in the unit of the load."""
         slopes = np.einsum("nkc,nc->nk", self.along, tangents)
 
-        def shared(forces: Array) -> tuple[Array, Array]:
+        def share_load(forces: Array) -> tuple[Array, Array]:
             held = np.zeros(len(load))
             shares = np.ones(len(load))
             # the moment of friction on the faces of a slider knows its share; one correction of it is enough each time
@@ -84,23 +87,23 @@ class PressedJoints:
             some = np.where(held > 0.0, held, 1.0)[:, None]
             return -load[:, None] * np.sign(slopes) * greatest / some, held
 
-        forces, _held = shared(np.zeros_like(slopes))
-        forces, _held = shared(forces)
-        forces = self._settled(shared, forces, load)
-        return shared(forces)[1]
+        forces, _held = share_load(np.zeros_like(slopes))
+        forces, _held = share_load(forces)
+        forces = self._settle_forces(share_load, forces, load)
+        return share_load(forces)[1]
 
-    def _settled(self, shared: Any, forces: Array, load: Array) -> Array:
-        """Forces (n, k) that are what they make themselves, by Newton's method with differences."""
+    def _settle_forces(self, share_load: LoadSharing, forces: Array, load: Array) -> Array:
+        """Forces (n, k) that agree with the shares to which they lead, by Newton's method with differences."""
         count = forces.shape[1]
         left, step = np.arange(len(load)), DIFFERENCE
         scale = np.maximum(np.max(np.abs(forces), axis=1), 1e-300)
         for _step in range(MOST_STEPS):
-            missed = forces - shared(forces)[0]
+            missed = forces - share_load(forces)[0]
             slopes = np.empty((len(load), count, count))
             for k in range(count):
                 moved = forces.copy()
                 moved[:, k] += step * scale
-                slopes[:, :, k] = (moved - shared(moved)[0] - missed) / (step * scale)[:, None]
+                slopes[:, :, k] = (moved - share_load(moved)[0] - missed) / (step * scale)[:, None]
             change = -np.einsum(
                 "nij,nj->ni", np.linalg.pinv(np.nan_to_num(slopes), 1e-9), np.nan_to_num(missed)
             )

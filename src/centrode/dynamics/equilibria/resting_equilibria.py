@@ -8,7 +8,8 @@ leave.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import Any, TypeAlias
@@ -29,13 +30,17 @@ from centrode.dynamics.equilibria.equilibrium_search import (
 )
 from centrode.dynamics.equilibria.linear_equations import LoadedMechanism
 from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motions
+from centrode.dynamics.forward_dynamics.contacts import stop_coordinate
 from centrode.dynamics.forward_dynamics.equations_of_motion import KeptDrive
-from centrode.geometry.plane import dot
+from centrode.dynamics.load_coordinates import Spin, is_angular
+from centrode.dynamics.state import length_unit
+from centrode.geometry import sphere
 from centrode.kinematics.path import DrivenBy
 from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.contacts import Stop
 from centrode.model.mechanism import Drive, Mechanism
+from centrode.numerics.operations import PLAIN
 from centrode.structure.constraints import (
     AngleDrive,
     Constraint,
@@ -45,7 +50,7 @@ from centrode.structure.constraints import (
     Positions,
     Row,
 )
-from centrode.structure.dimensions import Dimensions
+from centrode.structure.dimensions import Dimensions, reference_arcs
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -71,11 +76,13 @@ class PointAtWall:
     ----------
     drive : name by which the distance is known
     direction : unit vector
+    radius : of the sphere [m], on which points are unit vectors; 1 in the plane
     """
 
     drive: str
     point: str
-    direction: tuple[float, float]
+    direction: tuple[float, ...]
+    radius: float = 1.0
     size = 1
     angular = False
 
@@ -88,11 +95,45 @@ class PointAtWall:
         return _("stop {stop}").format(stop=self.drive)
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        x, y = at.points[self.point]
-        return [dot(self.direction, (x, y)) - at.drives[self.drive]]
+        parts = [u * x for u, x in zip(self.direction, at.points[self.point], strict=True)]
+        return [sum(parts[1:], parts[0]) * self.radius - at.drives[self.drive]]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        return [{self.bodies[0]: self.direction}]
+        return [{self.bodies[0]: tuple(self.radius * u for u in self.direction)}]
+
+
+@dataclass(frozen=True)
+class PointsAtArc:
+    """On the sphere: two points are at an angular distance.
+
+    Attributes
+    ----------
+    drive : name by which the distance [rad] is known
+    """
+
+    drive: str
+    first: str
+    second: str
+    size = 1
+    angular = True
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return Entity("point", self.first), Entity("point", self.second)
+
+    @property
+    def label(self) -> str:
+        return _("stop {stop}").format(stop=self.drive)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        return [
+            numbers.space.distance(m, at.points[self.first], at.points[self.second]) - at.drives[self.drive]
+        ]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        one, other = at.points[self.first], at.points[self.second]
+        slopes = sphere.away(PLAIN, one, other), sphere.away(PLAIN, other, one)
+        return [dict(zip(self.bodies, slopes, strict=True))]
 
 
 @dataclass(frozen=True)
@@ -154,8 +195,7 @@ def _with_closed(
     loaded: LoadedMechanism, closed: Sequence[tuple[Stop, float, float]], starts: Array, scale: float
 ) -> Iterator[RestingEquilibrium]:
     """Equilibria at which some stops are closed, push, and no other is violated."""
-    kept = tuple(_closed_stop(loaded.mechanism, stop, bound) for stop, bound, _sign in closed)
-    held = replace(loaded, equations=replace(loaded.equations, kept=(*loaded.equations.kept, *kept)))
+    held = _held_stops(loaded, closed)
     near = held.closed_coordinates(_near_bounds(loaded, closed, starts))
     near = near[np.isfinite(near[:, 0])]
     if not len(near):
@@ -180,9 +220,10 @@ def _with_closed(
     motions = small_motions(held, places)
     values = stop_values(loaded, places)
     first = held.equations.equations - len(closed)
+    senses = _senses(loaded.mechanism, closed)
     for k, place in enumerate(places):
         # a multiplier acts against its row: upwards at `most` it holds back
-        forces = -reactions[k, first:]
+        forces = -senses * reactions[k, first:]
         pushes = all(
             -sign * force * _unit(loaded, stop) > PUSHING * scale
             for (stop, _bound, sign), force in zip(closed, forces, strict=True)
@@ -203,7 +244,9 @@ def _rank(held: LoadedMechanism, places: Array) -> int:
 
 
 def _unit(loaded: LoadedMechanism, stop: Stop) -> float:
-    return 1.0 if stop.link is not None else float(loaded.equations.numbers.scale)
+    if is_angular(stop_coordinate(loaded.mechanism, stop)):
+        return 1.0
+    return float(loaded.equations.numbers.scale) * length_unit(loaded.mechanism)
 
 
 def _near_bounds(
@@ -222,24 +265,58 @@ def _near_bounds(
     return starts[chosen]
 
 
+def _held_stops(loaded: LoadedMechanism, closed: Sequence[tuple[Stop, float, float]]) -> LoadedMechanism:
+    """The mechanism with stops at their bounds as drives that keep a value."""
+    mechanism, equations = loaded.mechanism, loaded.equations
+    kept = tuple(_closed_stop(mechanism, stop, bound) for stop, bound, _sign in closed)
+    if mechanism.space == "sphere":
+        equations = replace(equations, numbers=_with_reference_arcs(equations.numbers, kept))
+    return replace(loaded, equations=replace(equations, kept=(*equations.kept, *kept)))
+
+
+def _with_reference_arcs(numbers: Dimensions, kept: Iterable[KeptDrive]) -> Dimensions:
+    """Dimensions with the arcs between which angles of closed stops are measured: else driven links alone have them."""
+    arcs = {
+        one.constraint.link: reference_arcs(
+            one.constraint.link, one.constraint.relative_to, numbers.frame, numbers.local, numbers.ends
+        )
+        for one in kept
+        if isinstance(one.constraint, AngleDrive)
+    }
+    return replace(numbers, references={**numbers.references, **arcs})
+
+
 def _closed_stop(mechanism: Mechanism, stop: Stop, bound: float) -> KeptDrive:
     """A stop at its bound as a drive that keeps a value."""
-    name = stop.label
+    name, on_sphere = stop.label, mechanism.space == "sphere"
     constraint: Constraint
     if stop.link is not None:
-        constraint = AngleDrive(name, stop.link, stop.relative_to)
+        coordinate = stop_coordinate(mechanism, stop)
+        if isinstance(coordinate, Spin):
+            # the joint's angle is that of the other link against this one
+            constraint, bound = AngleDrive(name, stop.relative_to, stop.link), -bound
+        else:
+            constraint = AngleDrive(name, stop.link, stop.relative_to)
     elif stop.guide is not None:
         guide = mechanism.guide(stop.guide)
         constraint = DisplacementDrive(name, guide.point, guide.id, guide.on)
     elif stop.point is not None:
-        x, y = (float(one) for one in (stop.direction or (1.0, 0.0))[:2])
-        length = float(np.hypot(x, y))
-        constraint = PointAtWall(name, stop.point, (x / length, y / length))
+        direction = [float(x) for x in stop.direction or (1.0, 0.0)]
+        direction = direction if on_sphere else direction[:2]
+        length = math.hypot(*direction)
+        radius = float(mechanism.sphere_radius) if on_sphere else 1.0
+        constraint = PointAtWall(name, stop.point, tuple(x / length for x in direction), radius)
     else:
         first, second = stop.points or ("", "")
-        constraint = DistanceDrive(name, first, second)
+        constraint = (PointsAtArc if on_sphere else DistanceDrive)(name, first, second)
     # it has the name of the stop, whatever it drives
     return KeptDrive(constraint, DrivenBy(Drive(guide=name, start=bound, speed=0.0), Uniform(0.0), bound))
+
+
+def _senses(mechanism: Mechanism, closed: Sequence[tuple[Stop, float, float]]) -> Array:
+    """Signs of the coordinates of closed stops against what keeps them: -1 where a joint counts the other link."""
+    coordinates = [stop_coordinate(mechanism, stop) for stop, _bound, _sign in closed]
+    return np.array([one.sense if isinstance(one, Spin) else 1.0 for one in coordinates])
 
 
 def _is_allowed(loaded: LoadedMechanism, values: Array, closed: Sequence[tuple[Stop, float, float]]) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf, nan
+from math import inf, isfinite, nan
 from typing import TypeAlias
 
 import numpy as np
@@ -104,9 +104,13 @@ class EventWatch:
         return started
 
     def _check_stops(self, felt: ContactForces) -> None:
-        """Raise InputError where a stop is violated."""
+        """Raise InputError where a stop is violated, or its two points coincide."""
         for k, contact in enumerate(self.states.contacts):
             value, tolerance = float(felt.values[k]), TOUCHING * self.states.units[k]
+            if not isfinite(felt.speeds[k]):
+                # a distance has no derivative where it vanishes
+                what = _("its points coincide at the start, where their distance has no direction")
+                raise InputError(f"[[stops]] {contact.label}", what, _("move the start a little"))
             for bound, sign in ((contact.least, -1.0), (contact.most, 1.0)):
                 if bound is not None and sign * (bound - value) < -tolerance:
                     what = _("it is at {value:.9g} at the start, beyond its bound {bound:.9g}")
