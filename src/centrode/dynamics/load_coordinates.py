@@ -335,6 +335,11 @@ def is_angular(coordinate: Coordinate) -> bool:
     return isinstance(coordinate, Turn | Spin | HingeTurn | GuideArc | AngularDistance)
 
 
+def force_unit(coordinate: Coordinate) -> str:
+    """Unit of what acts along a coordinate: of a moment or of a force."""
+    return "N m" if is_angular(coordinate) else "N"
+
+
 def is_periodic(coordinate: Coordinate) -> bool:
     """Whether it comes back to the same value after a full turn."""
     return isinstance(coordinate, HingeTurn)

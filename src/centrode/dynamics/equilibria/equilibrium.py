@@ -40,7 +40,7 @@ from centrode.dynamics.equilibria.small_motions import (
     small_motions,
 )
 from centrode.dynamics.forward_dynamics.contacts import stop_coordinate
-from centrode.dynamics.load_coordinates import is_angular
+from centrode.dynamics.load_coordinates import force_unit
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
@@ -387,7 +387,7 @@ def _controllers(
         return {}
     coordinates["controller"] = np.array([one.description.name for one in controls], dtype=object)
     found = vocabulary_variable("controller_output", ("equilibrium", "controller"), loaded.at(places).output)
-    units = ["1" if one.drives is None else "N m" if is_angular(one.drives) else "N" for one in controls]
+    units = ["1" if one.drives is None else force_unit(one.drives) for one in controls]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
     return {"controller_output": found}
 
@@ -403,7 +403,7 @@ def _stop_forces(
     for row, one in zip(forces[free:], resting, strict=True):
         row += [one.forces.get(stop.label, 0.0) for stop in stops]
     found = vocabulary_variable("restraint_force", ("equilibrium", "contact"), forces)
-    units = ["N m" if is_angular(stop_coordinate(description, stop)) else "N" for stop in stops]
+    units = [force_unit(stop_coordinate(description, stop)) for stop in stops]
     found[2]["units"] = units[0] if len(set(units)) == 1 else ", ".join(units)
     return found
 
