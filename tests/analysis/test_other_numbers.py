@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.analysis.redesign.other_numbers import with_numbers
+from centrode.analysis.redesign.candidates import with_numbers
 
 
 @pytest.mark.parametrize(

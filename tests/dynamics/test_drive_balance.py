@@ -13,7 +13,7 @@ from centrode.dynamics.force_polygons.results import force_polygon_results
 from centrode.dynamics.kinetostatics.reactions import has_real_motion
 from centrode.dynamics.motion_results import study
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.steady_motion.closing_balance import closing_balance
+from centrode.dynamics.steady_motion.machine import closing_balance
 from centrode.topics.presentation import sheet_of
 from machines import BACKWARD_ROCKER, GAS_ENGINE, Array, centre_of, engine
 

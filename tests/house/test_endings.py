@@ -15,7 +15,7 @@ import click
 import pytest
 
 from centrode.cli import main as command_line
-from centrode.cli.announcements import announce_samples, announce_turns
+from centrode.cli.progress import announce_samples, announce_turns
 from centrode.errors import InputError, MotionError
 from centrode.locale import choose_language
 

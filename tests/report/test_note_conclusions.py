@@ -13,7 +13,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.motion_results import study
-from centrode.dynamics.steady_motion.closing_balance import closing_balance
+from centrode.dynamics.steady_motion.machine import closing_balance
 from centrode.errors import InputError
 from centrode.render.document.blocks import ItemsBlock, ParagraphBlock, Picture, Report, TableBlock
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+import numpy as np
+
 from centrode.animation.centrodes import CentresLayer, CentrodesLayer
 from centrode.animation.frames import (
     Course,
@@ -52,6 +54,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.analysis.instant_centres.results import CentrodeResults
+    from centrode.dynamics.equilibria.modes import ModesResults
     from centrode.dynamics.motion_results import MotionResults
     from centrode.model.mechanism import Mechanism
 
@@ -368,3 +371,21 @@ def animate_centrodes(
 def animate_rolling(results: CentrodeResults, path: Path, dark: bool = False) -> None:
     """Write an animation (GIF or MP4) of the centrodes of a result; raises InputError where nothing rolls."""
     animate_centrodes(results.mechanism, results.motion, results.centrodes, path, dark)
+
+
+def animate_modes(results: ModesResults, path: Path, dark: bool = False) -> None:
+    """Write an animation of the first mode to a file, and of each other one beside it: mode-1.gif, mode-2.gif, ..."""
+    for number, motion in enumerate(results.motions):
+        beside = path.with_name(path.name.replace("1", str(number + 1)))
+        animate_period(results.mechanism, motion, beside if number else path, dark)
+
+
+def animate_period(mechanism: Mechanism, motion: xarray.Dataset, path: Path, dark: bool = False) -> None:
+    """Write an animation of a motion that ends where it begins."""
+    times = motion["time"].values
+    course = Course(mechanism, motion, times, "once", asked=len(times))
+    # the last position is the first of the next round
+    chosen = np.unique(np.linspace(0, len(times) - 1, FRAMES + 1).round().astype(int))[:-1]
+    film = Film(course, motion.isel(sample=chosen), np.arange(len(chosen)), times[chosen])
+    stage, _notes = stage_of(film, Shown(), SIZE, dark=dark)
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), no_progress)

@@ -7,22 +7,26 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
-from centrode.app.cam_followers import follower_scene
 from centrode.app.cam_segments import segment_rows
 from centrode.app.documents import Document
 from centrode.app.quantity_texts import field_text
 from centrode.app.sketch import display_units, list_of_tables
 from centrode.cams.cam import cam as course_of
-from centrode.cams.followers.base_circle import has_profile
+from centrode.cams.followers.base_circle import follower_cam, has_profile
+from centrode.cams.followers.geometry import Oscillating
 from centrode.cams.results import cam_profile
 from centrode.errors import CentrodeError
 from centrode.locale import _, mark
 from centrode.model.cam import Cam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.units import number_and_unit
+from centrode.scenes.driving_cams import DrivingCam
 
+DIGITS = 6
+"""Significant digits of a place in the picture."""
 SAMPLES = 361
 FIELDS = {
     "base_radius": mark("base radius"),
@@ -175,3 +179,38 @@ def _numbers(path: str, table: Mapping[str, Any], owner: str) -> Iterator[dict[s
 def _field_name(owner: str, key: str) -> str:
     name = FIELDS_OF.get((owner, key)) or FIELDS.get(key)
     return _(name) if name else key.replace("_", " ")
+
+
+def follower_scene(cam: PlateCam, angles: npt.NDArray[np.float64]) -> dict[str, Any] | None:
+    """The follower at angles (n) [rad] of the cam; None where this cannot lead it.
+
+    `places` are centres of the roller, the edge, or the foot of a stem on its face, (n, 2) [m]; `faces` the ends of
+    the straight parts of a flat-faced follower, (n, 4) or (n, 8) [m]; `sense` is 1 where the cam turns
+    counter-clockwise, else -1; `pivot` that of an oscillating follower [m].
+    """
+    try:
+        body = follower_cam(cam)
+        drawing = DrivingCam.alone(body, angles, 1.0)
+        lift = body.motion.lift(np.mod(angles, math.tau))[0]
+    except CentrodeError:
+        return None
+    oscillating = isinstance(body.guide, Oscillating)
+    flat = math.isinf(body.touch.roller)
+    places = None
+    if not (flat and oscillating):
+        places = np.stack(np.broadcast_arrays(*body.guide.centre(np, lift)), axis=-1)
+    faces = None
+    if flat:
+        lines = [np.ravel(drawing.lines(sample)) for sample in range(len(angles))]
+        faces = [_rounded_numbers(line) for line in lines]
+    return {
+        "sense": 1 if body.sense > 0.0 else -1,
+        "contact": cam.follower.contact,
+        "places": None if places is None else [_rounded_numbers(place) for place in places],
+        "faces": faces,
+        "pivot": None if drawing.pivot is None else _rounded_numbers(drawing.pivot),
+    }
+
+
+def _rounded_numbers(numbers: npt.NDArray[np.float64]) -> list[float | None]:
+    return [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers]

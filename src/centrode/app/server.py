@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import html
 import json
 import secrets
@@ -17,7 +18,7 @@ from typing import Any
 from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
-from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -165,16 +166,32 @@ def server_application(
             await asyncio.gather(*warming, return_exceptions=True)
             lanes.end()
 
-    async def index(request: Request) -> Response:
-        return await open_page(request, "index.html")
+    return Starlette(routes=Endpoints(settings, lanes).routes(), lifespan=lifespan)
 
-    async def gears(request: Request) -> Response:
-        return await open_page(request, "gears.html")
 
-    async def synthesis(request: Request) -> Response:
-        return await open_page(request, "synthesis.html")
+@dataclass(frozen=True)
+class Endpoints:
+    """What answers at each address of the workbench, for this machine's names and holders of the token alone."""
 
-    async def open_page(request: Request, name: str) -> Response:
+    settings: ServerSettings
+    lanes: RequestLanes
+
+    def routes(self) -> list[BaseRoute]:
+        """Addresses with what answers there."""
+        pages = {"/": "index.html", "/gears": "gears.html", "/synthesis": "synthesis.html"}
+        routes: list[BaseRoute] = [
+            *(Route(path, functools.partial(self.open_page, name=name)) for path, name in pages.items()),
+            Route("/export", self.export, methods=["POST"]),
+            Route("/page", self.page),
+            WebSocketRoute("/socket", self.socket),
+        ]
+        if STATIC.is_dir():
+            routes.append(Mount("/static", _OwnFiles(self.settings, directory=STATIC)))
+        return routes
+
+    async def open_page(self, request: Request, name: str) -> Response:
+        """A page of the workbench, with the token where the request has it or a code that is good for it."""
+        settings = self.settings
         said = "\n".join(_spoken_error(REFUSED, _preferred_language(request)).values())
         token, code = (request.query_params.get(key) for key in ("token", "code"))
         if not _is_own_request(settings, request):
@@ -186,8 +203,9 @@ def server_application(
         given = {"token": settings.token} if allowed else {"refused": said}
         return _page_with(given, name)
 
-    async def export(request: Request) -> Response:
-        if not settings.is_own_origin(request.headers.get("origin")):
+    async def export(self, request: Request) -> Response:
+        """A file of the description that the body of the request holds."""
+        if not self.settings.is_own_origin(request.headers.get("origin")):
             return _refuse(403)
         try:
             given = await _bounded_json(request)
@@ -197,21 +215,23 @@ def server_application(
             return JSONResponse(
                 {"error": _spoken_error(TOO_LARGE, _preferred_language(request))}, 413, HEADERS
             )
-        refused = _refusal(settings, request, given.get("token"))
+        refused = _refusal(self.settings, request, given.get("token"))
         if refused is not None:
             return refused
-        message = {**given, "do": "export", "token": ""}
-        return await _file(lanes.slow, message)
+        return await _file(self.lanes.slow, {**given, "do": "export", "token": ""})
 
-    async def page(request: Request) -> Response:
-        refused = _refusal(settings, request, request.query_params.get("token"))
+    async def page(self, request: Request) -> Response:
+        """The page of a mechanism that computes itself."""
+        refused = _refusal(self.settings, request, request.query_params.get("token"))
         if refused is not None:
             return refused
         names = ("digest", "language")
         message = {key: request.query_params[key] for key in names if key in request.query_params}
-        return await _file(lanes.quick, {**message, "do": "page"})
+        return await _file(self.lanes.quick, {**message, "do": "page"})
 
-    async def socket(socket: WebSocket) -> None:
+    async def socket(self, socket: WebSocket) -> None:
+        """The conversation of a window: requests and answers, until it closes."""
+        settings = self.settings
         own = settings.is_own_host(socket.headers.get("host")) and settings.is_own_origin(
             socket.headers.get("origin")
         )
@@ -219,19 +239,7 @@ def server_application(
             await socket.close(1008)
             return
         await socket.accept()
-        await Conversation(socket, lanes).hold()
-
-    routes = [
-        Route("/", index),
-        Route("/gears", gears),
-        Route("/synthesis", synthesis),
-        Route("/export", export, methods=["POST"]),
-        Route("/page", page),
-        WebSocketRoute("/socket", socket),
-    ]
-    if STATIC.is_dir():
-        routes.append(Mount("/static", _OwnFiles(settings, directory=STATIC)))
-    return Starlette(routes=routes, lifespan=lifespan)
+        await Conversation(socket, self.lanes).hold()
 
 
 async def _warm(runner: Runner) -> None:

@@ -11,9 +11,8 @@ import click
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.announcements import announce_samples
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
-from centrode.cli.progress import Progress
+from centrode.cli.progress import Progress, announce_samples
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import option_parameters, parameters_of, write_sheet
 from centrode.errors import InputError, MotionError

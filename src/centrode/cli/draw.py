@@ -10,9 +10,9 @@ import click
 import centrode as ct
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.announcements import announce_size
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.cli.instants import echo_values
+from centrode.cli.progress import announce_size
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
 from centrode.quantities import spelled_unit

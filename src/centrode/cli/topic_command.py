@@ -11,7 +11,6 @@ import click
 from centrode import render
 from centrode.cli import library, output
 from centrode.cli.about import about
-from centrode.cli.announcements import announce_size, announce_turns
 from centrode.cli.arguments import (
     dark_option,
     mechanism_argument,
@@ -26,7 +25,7 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.instants import default_instants, echo_values
 from centrode.cli.option_values import pairs
-from centrode.cli.progress import Progress
+from centrode.cli.progress import Progress, announce_size, announce_turns
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, chosen_language, mark, speaking

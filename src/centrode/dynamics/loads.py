@@ -8,7 +8,7 @@ from enum import StrEnum
 from functools import partial
 from importlib import import_module
 from math import ceil, floor, hypot, tau
-from typing import Any, NamedTuple, TypeAlias, assert_never
+from typing import Any, ClassVar, NamedTuple, TypeAlias, assert_never
 
 import numpy as np
 import numpy.typing as npt
@@ -98,16 +98,24 @@ class EnergyClass(StrEnum):
     OTHER = "other"
 
 
+class ContinuousLaw:
+    """A law that never jumps, is the same whichever way its coordinate goes, and has no kink at a value of it.
+
+    The value of the drive does not represent it, as it may depend on time, on the coordinate or on its speed.
+    """
+
+    levels: ClassVar[tuple[float, ...]] = ()
+    jumps: ClassVar[bool] = False
+    depends_on_sense: ClassVar[bool] = False
+    by_place: ClassVar[bool] = False
+
+
 @dataclass(frozen=True)
-class Constant:
+class Constant(ContinuousLaw):
     """The same always."""
 
     value: Number
-    uses: frozenset[str] = frozenset()
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
-
+    uses: ClassVar[frozenset[str]] = frozenset()
     energy_class = EnergyClass.OTHER
     by_place = True
 
@@ -158,17 +166,13 @@ class LoadFormula:
 
 
 @dataclass(frozen=True)
-class TorsionSpring:
+class TorsionSpring(ContinuousLaw):
     """-k (x - free) along an angle."""
 
     stiffness: float
     free: float
-    uses: frozenset[str] = frozenset("x")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("x")
     energy_class = EnergyClass.STORED
-    by_place = False
 
     def energy(self, x: Number) -> Number:
         """Potential energy [J] at a value of its coordinate."""
@@ -179,15 +183,12 @@ class TorsionSpring:
 
 
 @dataclass(frozen=True)
-class StraightSpring:
+class StraightSpring(ContinuousLaw):
     """-k (l - free), given along half the squared distance: -k (1 - free/l)."""
 
     stiffness: float
     free: float
-    uses: frozenset[str] = frozenset("x")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("x")
     energy_class = EnergyClass.STORED
     by_place = True
 
@@ -204,16 +205,12 @@ class StraightSpring:
 
 
 @dataclass(frozen=True)
-class Damper:
+class Damper(ContinuousLaw):
     """-c v along its coordinate."""
 
     damping: float
-    uses: frozenset[str] = frozenset("v")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("v")
     energy_class = EnergyClass.FRICTION
-    by_place = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.damping * now.v
@@ -252,16 +249,12 @@ class Friction:
 
 
 @dataclass(frozen=True)
-class Square:
+class Square(ContinuousLaw):
     """-a v^2: what the plain sum of the source takes for friction, whichever way the joint turns."""
 
     quadratic: Number
-    uses: frozenset[str] = frozenset("v")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("v")
     energy_class = EnergyClass.FRICTION
-    by_place = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.quadratic * now.v * now.v
@@ -322,7 +315,7 @@ class LoadDiagram:
 
 
 @dataclass(frozen=True)
-class LoadTable:
+class LoadTable(ContinuousLaw):
     """Straight lines between the rows of a table over the value of the drive or over time.
 
     Attributes
@@ -337,11 +330,7 @@ class LoadTable:
     rows: tuple[tuple[float, ...], ...]
     of: str
     period: float = 0.0
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
-    by_place = False
 
     @classmethod
     def over(

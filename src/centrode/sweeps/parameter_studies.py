@@ -16,6 +16,7 @@ from math import nan, prod
 from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import CentrodeError, InputError
@@ -282,23 +283,13 @@ def parameter_study(
             refusals.append(refusal)
             if progress is not None:
                 progress(len(found), count)
-    units = {name: unit for numbers in found for name, (_value, unit) in numbers.items()}
-    units = {name: units[name] for name in _chosen(units, outputs)}
-    along = design.dimensions
-    variables: dict[str, Any] = {
-        path: (
-            along,
-            np.reshape([row[path] for row in followed], design.shape),
-            {"units": _unit(mechanism, path)},
-        )
+    variables = {
+        path: _of_designs(design, [row[path] for row in followed], {"units": _unit(mechanism, path)})
         for path in formulas
     }
-    for name, unit in units.items():
-        values = [numbers[name][0] if name in numbers else nan for numbers in found]
-        variables[name] = (along, np.reshape(values, design.shape), {"units": unit})
-    computed = np.array([not refusal for refusal in refusals], dtype=np.int8)
-    variables[STATUS] = (along, computed.reshape(design.shape))
-    variables[REFUSAL] = (along, np.array(refusals, dtype=str).reshape(design.shape))
+    variables |= _numbers_of_studies(design, found, outputs)
+    variables[STATUS] = _of_designs(design, np.array([not refusal for refusal in refusals], dtype=np.int8))
+    variables[REFUSAL] = _of_designs(design, np.array(refusals, dtype=str))
     coordinates = {
         path: (dimension, values, {"units": _unit(mechanism, path)})
         for path, (dimension, values) in design.coordinates.items()
@@ -312,6 +303,28 @@ def parameter_study(
         "dependent": "; ".join(f"{path} = {text}" for path, text in (dependent or {}).items()),
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _of_designs(
+    design: Design, values: npt.ArrayLike, attributes: Mapping[str, str] | None = None
+) -> tuple[Any, ...]:
+    """A variable with a value for each mechanism of a design, as xarray takes it."""
+    return design.dimensions, np.reshape(values, design.shape), dict(attributes or {})
+
+
+def _numbers_of_studies(
+    design: Design, found: Sequence[Numbers], outputs: Sequence[str] | str | None
+) -> dict[str, Any]:
+    """Variables of the numbers that are wanted; NaN where a mechanism has none."""
+    units = {name: unit for numbers in found for name, (_value, unit) in numbers.items()}
+    return {
+        name: _of_designs(
+            design,
+            [numbers[name][0] if name in numbers else nan for numbers in found],
+            {"units": units[name]},
+        )
+        for name in _chosen(units, outputs)
+    }
 
 
 def _answer(

@@ -34,6 +34,7 @@ from centrode.sweeps.storage import storage_of
 from centrode.sweeps.store import InMemory, Kept, SweepFrame, open_store, read_store, study_of, with_tally
 from centrode.sweeps.sweep_plans import (
     Progress,
+    Span,
     SweepPlan,
     blocks_of,
     check_target,
@@ -160,6 +161,23 @@ def sweep(
         data = _in_memory(plan, progress, out)
         data.attrs["topic"] = "sweep"
         return data
+    requested = outputs, reduce, gradient, span
+    return _in_store(plan, store, requested, progress, cluster)
+
+
+def _in_store(
+    plan: SweepPlan,
+    store: str | Path,
+    requested: tuple[Outputs, Reduce, bool, Span],
+    progress: Progress | None,
+    cluster: ClusterSource,
+) -> xr.Dataset:
+    """The sweep of a plan, kept in a store: only what is not there yet is computed.
+
+    Parameters
+    ----------
+    requested : outputs, reduction, gradient and samples as they were given, for workers of a cluster
+    """
     _check_size(plan.frame, designs.IN_STORE, _("reduce it, or choose fewer"))
     storage = storage_of(store)
     facts = study_of(plan.frame, plan.task, plan.target)
@@ -174,7 +192,7 @@ def sweep(
         if cluster is None:
             _compute(plan, kept, progress)
         else:
-            text = work_text(plan, outputs, reduce, gradient, span, wanted, kept.blocks)
+            text = work_text(plan, *requested, wanted, kept.blocks)
             compute_on_cluster(kept, text, wanted, cluster, progress)
     data = with_tally(read_store(storage, plan.frame), plan.frame, kept.tally)
     # a store says what was computed, and not how that is shown: the topic is only in what is returned

@@ -203,32 +203,13 @@ def improve(
     if aim not in ("least", "greatest"):
         raise InputError("aim", _("expected one of {names}").format(names="least, greatest"))
     names, low, high = _free_ranges(mechanism, free)
-    kept = dict(constraints or {})
-    texts = [objective, *kept]
-    wheres = ["objective", *(f"constraints {text}" for text in kept)]
-    measures = [
-        measure_of(mechanism, text, where, number)
-        for number, (text, where) in enumerate(zip(texts, wheres, strict=True))
-    ]
-    limits = [_limits(bounds, one, where) for (one, where, bounds) in zip(
-        measures[1:], wheres[1:], kept.values(), strict=True
-    )]  # fmt: skip
+    measures, limits, wheres = _measures_and_limits(mechanism, objective, constraints or {})
     outputs = {name: formula for one in measures for name, formula in one.outputs.items()}
-    try:
-        moved = solver(mechanism, names, samples, outputs=outputs)
-    except InputError as error:
-        # what the solver calls measure_2 is the second of the numbers that are kept
-        which, _between, _rest = error.where.removeprefix("outputs measure_").partition("_")
-        if not error.where.startswith("outputs measure_") or not which.isdigit():
-            raise
-        raise InputError(wheres[int(which)], error.what, error.repair) from None
+    moved = _solver_of_measures(mechanism, names, samples, outputs, wheres)
     search = _ImprovementSearch(moved, measures, low, high)
     own = np.array(moved.own)
-    try:
-        before, _slopes = search.values_at((own - low) / (high - low))
-    except _OpenMotion:
-        what = _("the mechanism does not move through its whole range, or a number has no value there")
-        raise InputError("mechanism", what, _("choose dimensions with which it moves")) from None
+    before = _numbers_at_start(search, own)
+    # bounds are those of a search within the ranges: dimensions outside begin at the nearer end
     start = np.clip((own - low) / (high - low), 0.0, 1.0)
     sign = 1.0 if aim == "least" else -1.0
     place = _descend(search, start, sign, limits, progress, stop)
@@ -260,6 +241,50 @@ def improve(
         search.evaluations,
         not stop(),
     )
+
+
+def _measures_and_limits(
+    mechanism: Mechanism, objective: str, constraints: Mapping[str, Bounds]
+) -> tuple[list[Measure], list[tuple[float, float]], list[str]]:
+    """Measures of the objective and of the numbers that are kept, limits of the latter, and where each was given."""
+    texts = [objective, *constraints]
+    wheres = ["objective", *(f"constraints {text}" for text in constraints)]
+    measures = [
+        measure_of(mechanism, text, where, number)
+        for number, (text, where) in enumerate(zip(texts, wheres, strict=True))
+    ]
+    limits = [
+        _limits(bounds, one, where)
+        for one, where, bounds in zip(measures[1:], wheres[1:], constraints.values(), strict=True)
+    ]
+    return measures, limits, wheres
+
+
+def _solver_of_measures(
+    mechanism: Mechanism,
+    names: Sequence[str],
+    samples: int,
+    outputs: Mapping[str, str],
+    wheres: Sequence[str],
+) -> Solver:
+    """The solver of what measures need; InputError names the measure as it was given."""
+    try:
+        return solver(mechanism, names, samples, outputs=outputs)
+    except InputError as error:
+        # what the solver calls measure_2 is the second of the numbers that are kept
+        which, _between, _rest = error.where.removeprefix("outputs measure_").partition("_")
+        if not error.where.startswith("outputs measure_") or not which.isdigit():
+            raise
+        raise InputError(wheres[int(which)], error.what, error.repair) from None
+
+
+def _numbers_at_start(search: _ImprovementSearch, own: Array) -> Array:
+    """Numbers of the mechanism as it is; InputError where it has none."""
+    try:
+        return search.values_at((own - search.low) / search.width)[0]
+    except _OpenMotion:
+        what = _("the mechanism does not move through its whole range, or a number has no value there")
+        raise InputError("mechanism", what, _("choose dimensions with which it moves")) from None
 
 
 def _free_ranges(mechanism: Mechanism, free: object) -> tuple[list[str], Array, Array]:

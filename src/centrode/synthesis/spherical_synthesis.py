@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.kinematics.motion import motion
@@ -31,7 +32,13 @@ from centrode.synthesis.least_squares import (
 )
 from centrode.synthesis.processes import HERE, Processes
 from centrode.synthesis.requests import MOST_POSES, Constraints, Synthesis, SynthesisTask
-from centrode.synthesis.spherical_dyads import posed_linkages, poses_of, spherical_dyads
+from centrode.synthesis.spherical_dyads import (
+    PosedLinkages,
+    SphericalPoses,
+    posed_linkages,
+    poses_of,
+    spherical_dyads,
+)
 from centrode.synthesis.spherical_four_bars import (
     COUPLER,
     CRANK,
@@ -55,6 +62,8 @@ from centrode.synthesis.spherical_four_bars import (
     transmission_cosines,
     unit_vectors,
 )
+
+IntArray: TypeAlias = npt.NDArray[np.int64]
 
 SHAPES = 2500
 """Random linkages whose curves are compared with the targets."""
@@ -267,32 +276,66 @@ def _candidates(wanted: Synthesis, problem: FitProblem, closed: bool) -> FitLane
     random = np.random.default_rng(wanted.seed)
     turning = wanted.constraints.crank is not None or closed
     shapes, sides = _drawn_shapes(random, SHAPES, turning=turning)
+    windows = _crank_windows(wanted, targets, closed)
+    offers = _best_turned(shapes, sides, windows, np.asarray(targets.points, dtype=np.float64))
+    variables = np.zeros((len(offers), VARIABLES))
+    crank = np.zeros((len(offers), len(targets.points)))
+    for row, (k, index, turn) in enumerate(offers):
+        angles, phase = windows[index]
+        variables[row, :9] = shapes[k]
+        for lon, lat in ((O_LON, O_LAT), (D_LON, D_LAT)):
+            vector = turn @ unit_vectors(shapes[k, lon], shapes[k, lat])
+            variables[row, lon], variables[row, lat] = (float(x) for x in longitudes(vector))
+        variables[row, PHASE] = phase
+        crank[row] = angles - phase
+    side = sides[[k for k, _index, _turn in offers]]
+    for k in (O_LON, D_LON):
+        if np.isfinite([problem.low[k], problem.high[k]]).all():
+            # a whole turn of a longitude is the same place, and may lie in the range
+            middle = (problem.low[k] + problem.high[k]) / 2
+            variables[:, k] += 2 * np.pi * np.rint((middle - variables[:, k]) / (2 * np.pi))
+    variables = np.clip(variables, problem.low, problem.high)
+    if targets.directions is not None:
+        variables[:, ATTACHMENT] = _best_attachments(variables, crank, side, targets.directions)
+    sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
+    return FitLanes(variables, side, crank, sense)
+
+
+def _crank_windows(wanted: Synthesis, targets: Targets, closed: bool) -> list[tuple[Array, float]]:
+    """Angles of a crank at the targets that are tried, each with the phase that it has of them [rad].
+
+    Without timing the crank turns with the length of the polygon through the targets, in either sense.
+    """
+    starts = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
+    if targets.crank is not None:
+        return [
+            (targets.crank + start, float(start))
+            for start in (starts if wanted.timing == "phase" else (0.0,))
+        ]
     points = np.asarray(targets.points, dtype=np.float64)
-    n = len(points)
     step = np.linalg.norm(np.diff(points, axis=0), axis=1)
     share = np.concatenate([[0.0], np.cumsum(step)])
     last = float(np.linalg.norm(points[0] - points[-1])) if closed else 0.0
     share = share / max(float(share[-1]) + last, 1e-12)
+    widths = (2 * np.pi,) if closed else (0.5, 1.0, 1.8, 2.8, 4.0)
+    return [
+        (start + sense * width * share, 0.0) for width in widths for start in starts for sense in (1.0, -1.0)
+    ]
+
+
+def _best_turned(
+    shapes: Array, sides: Array, windows: Sequence[tuple[Array, float]], points: Array
+) -> list[tuple[int, int, Array]]:
+    """Shapes and windows that fit points best, each with the rotation (3, 3) that brings it there, best first."""
+    n = len(points)
     chosen = np.unique(np.linspace(0, n - 1, min(n, COMPARED)).astype(np.int64))
-    windows: list[tuple[Array, float]] = []
-    starts = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
-    if targets.crank is not None:
-        for start in starts if wanted.timing == "phase" else (0.0,):
-            windows.append((targets.crank + start, float(start)))
-    else:
-        widths = (2 * np.pi,) if closed else (0.5, 1.0, 1.8, 2.8, 4.0)
-        windows = [
-            (start + sense * width * share, 0.0)
-            for width in widths
-            for start in starts
-            for sense in (1.0, -1.0)
-        ]
     misses, offers = [], []
     for index, (angles, _phase) in enumerate(windows):
         drawn = spherical_motion(shapes, angles[chosen], sides)
         closes = (drawn.radicand > 0).all(axis=1)
         mixed = points[chosen].T @ coupler_points(drawn, shapes)
         left, values, right = np.linalg.svd(mixed)
+        # a rotation, never a reflection: the least singular value counts with the sign of the determinant
         sign = np.sign(np.linalg.det(left @ right))
         match = values[:, 0] + values[:, 1] + sign * values[:, 2]
         miss = np.where(closes, len(chosen) - match, np.inf)
@@ -301,32 +344,16 @@ def _candidates(wanted: Synthesis, problem: FitProblem, closed: bool) -> FitLane
         misses.append(miss[best])
         offers += [(int(k), index, left[k] @ right[k]) for k in best]
     order = np.argsort(np.concatenate(misses), kind="stable")[:CANDIDATES]
-    variables = np.zeros((len(order), VARIABLES))
-    crank = np.zeros((len(order), n))
-    for row, place in enumerate(order.tolist()):
-        k, index, turn = offers[place]
-        angles, phase = windows[index]
-        variables[row, :9] = shapes[k]
-        for lon, lat in ((O_LON, O_LAT), (D_LON, D_LAT)):
-            vector = turn @ unit_vectors(shapes[k, lon], shapes[k, lat])
-            variables[row, lon], variables[row, lat] = (float(x) for x in longitudes(vector))
-        variables[row, PHASE] = phase
-        crank[row] = angles - phase
-    side = sides[[offers[place][0] for place in order.tolist()]]
-    for k in (O_LON, D_LON):
-        if np.isfinite([problem.low[k], problem.high[k]]).all():
-            # a whole turn of a longitude is the same place, and may lie in the range
-            middle = (problem.low[k] + problem.high[k]) / 2
-            variables[:, k] += 2 * np.pi * np.rint((middle - variables[:, k]) / (2 * np.pi))
-    variables = np.clip(variables, problem.low, problem.high)
-    if targets.directions is not None:
-        drawn = spherical_motion(variables[:, :9], crank + variables[:, PHASE, None], side)
-        heading = coupler_headings(drawn, variables, np.zeros(len(variables)))
-        across = np.cross(coupler_points(drawn, variables), heading)
-        cosine = (heading * targets.directions).sum(axis=(1, 2))
-        variables[:, ATTACHMENT] = np.arctan2((across * targets.directions).sum(axis=(1, 2)), cosine)
-    sense = np.where(crank[:, -1] >= crank[:, 0], 1.0, -1.0)
-    return FitLanes(variables, side, crank, sense)
+    return [offers[place] for place in order.tolist()]
+
+
+def _best_attachments(variables: Array, crank: Array, side: Array, directions: Array) -> Array:
+    """Angles at which a direction stands on the coupler that miss the required directions least [rad]."""
+    drawn = spherical_motion(variables[:, :9], crank + variables[:, PHASE, None], side)
+    heading = coupler_headings(drawn, variables, np.zeros(len(variables)))
+    across = np.cross(coupler_points(drawn, variables), heading)
+    cosine = (heading * directions).sum(axis=(1, 2))
+    return np.arctan2((across * directions).sum(axis=(1, 2)), cosine)
 
 
 def _answers(
@@ -503,62 +530,23 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
         raise InputError("[synthesis] hinges", _("on the sphere hinges are not given"), _("remove it"))
     poses = poses_of(rows[:, :3])
     dyads = spherical_dyads(poses)
-    number = len(dyads.moving)
-    few = (
-        np.unique(np.linspace(0, number - 1, min(number, 110)).astype(np.int64))
-        if number
-        else np.empty(0, int)
-    )
-    first, second = np.meshgrid(few, few, indexing="ij")
-    pairs = np.column_stack([first.ravel(), second.ravel()])
-    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    pairs = _dyad_pairs(len(dyads.moving))
     if not len(pairs):
         what = _("no pair of dyads leads through these poses")
         raise MotionError("[synthesis] targets", what, _("change one of the poses, or remove one"))
     progress(0.3)
     posed = posed_linkages(poses, dyads, pairs)
-    linkages = posed.linkages
-    forwards, backwards = (np.mod(s * np.diff(posed.crank, axis=1), 2 * np.pi) for s in (1.0, -1.0))
-    sense = np.where(forwards.sum(axis=1) <= backwards.sum(axis=1), 1.0, -1.0)
-    steps = np.where(sense[:, None] > 0, forwards, -backwards)
-    way = posed.crank[:, :1] + np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
-    arcs = linkages[:, [CRANK, COUPLER, ROCKER]]
-    good: Booleans = np.all(np.isfinite(linkages), axis=1)
-    good &= np.all((arcs > LEAST_ARC) & (arcs < np.pi - LEAST_ARC), axis=1)
-    turns: Booleans = np.all(spherical_crank_margins(linkages) > 1e-9, axis=1)
-    with np.errstate(invalid="ignore"):
-        clean = (posed.sides == posed.sides[:, :1]).all(axis=1) & (np.abs(way[:, -1] - way[:, 0]) < 2 * np.pi)
-        clean &= turns | posed.passes(way[:, [0, -1]])
-    constraints = wanted.constraints
-    transmission = _transmissions(linkages, posed.sides[:, 0], way, turns)
-    if constraints.crank is not None:
-        good &= turns
-    if constraints.transmission is not None:
-        good &= transmission >= constraints.transmission - 1e-9
-    if constraints.length_ratio is not None:
-        good &= arcs.max(axis=1) <= constraints.length_ratio * arcs.min(axis=1)
-    if constraints.order:
-        good &= clean
-    good &= hinges_within(linkages, constraints.pivots.longitude, constraints.pivots.latitude)
+    ways = _ways_through(posed)
     answers: list[Answer] = []
-    for k in np.lexsort((-transmission, ~clean)).tolist():
-        if not good[k]:
-            continue
+    for k in _kept_linkages(posed, ways, wanted.constraints):
         if stop() and answers:
             break
-        near = (np.abs(linkages[k, :7] - one).max() < 0.15 for one in kept_rows(answers))
+        # up to four poses leave a family of linkages, of which neighbours tell nothing new
+        near = (np.abs(posed.linkages[k, :7] - one).max() < 0.15 for one in kept_rows(answers))
         if len(rows) < 5 and any(near):
             continue
-        row, attachment = linkages[k : k + 1], posed.attachment[k : k + 1]
-        drawn = spherical_motion(row, way[k], posed.sides[k, :1])
-        errors = _arcs_between(coupler_points(drawn, row)[0], poses.places)
-        turn = _arcs_between(coupler_headings(drawn, row, attachment)[0], poses.headings)
-        numbers = {"turn_error": (float(turn.max()), "rad")}
-        answer = _answer(
-            task, linkages[k], float(posed.sides[k, 0]), way[k], float(sense[k]), errors,
-            float(posed.attachment[k]), numbers,
-        )  # fmt: skip
-        if constraints.order and not answer.defects.none:
+        answer = _posed_answer(task, posed, ways, poses, k)
+        if wanted.constraints.order and not answer.defects.none:
             continue
         answers.append(answer)
         progress(0.3 + 0.7 * len(answers) / wanted.answers)
@@ -571,6 +559,72 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
     return SynthesisResults(
         task, tuple(answers), _map(poses.places), examined=len(pairs), complete=not stop()
     )
+
+
+def _dyad_pairs(number: int) -> IntArray:
+    """Ordered pairs (n, 2) of different dyads, of evenly chosen ones where there are many."""
+    few = (
+        np.unique(np.linspace(0, number - 1, min(number, 110)).astype(np.int64))
+        if number
+        else np.empty(0, int)
+    )
+    first, second = np.meshgrid(few, few, indexing="ij")
+    pairs = np.column_stack([first.ravel(), second.ravel()])
+    return pairs[pairs[:, 0] != pairs[:, 1]]
+
+
+class _Ways(NamedTuple):
+    """How cranks turn from pose to pose: angles without jumps (n, poses) [rad], and senses (n)."""
+
+    angles: Array
+    senses: Array
+
+
+def _ways_through(posed: PosedLinkages) -> _Ways:
+    """The ways on which the cranks turn less in all, all steps in one sense."""
+    forwards, backwards = (np.mod(s * np.diff(posed.crank, axis=1), 2 * np.pi) for s in (1.0, -1.0))
+    sense = np.where(forwards.sum(axis=1) <= backwards.sum(axis=1), 1.0, -1.0)
+    steps = np.where(sense[:, None] > 0, forwards, -backwards)
+    turned = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+    return _Ways(posed.crank[:, :1] + turned, sense)
+
+
+def _kept_linkages(posed: PosedLinkages, ways: _Ways, constraints: Constraints) -> list[int]:
+    """Numbers of the linkages that keep the constraints: without defects first, then by their transmission."""
+    linkages, way = posed.linkages, ways.angles
+    arcs = linkages[:, [CRANK, COUPLER, ROCKER]]
+    good: Booleans = np.all(np.isfinite(linkages), axis=1)
+    good &= np.all((arcs > LEAST_ARC) & (arcs < np.pi - LEAST_ARC), axis=1)
+    turns: Booleans = np.all(spherical_crank_margins(linkages) > 1e-9, axis=1)
+    # clean: on one branch and within one turn, along which every position closes
+    with np.errstate(invalid="ignore"):
+        clean = (posed.sides == posed.sides[:, :1]).all(axis=1) & (np.abs(way[:, -1] - way[:, 0]) < 2 * np.pi)
+        clean &= turns | posed.passes(way[:, [0, -1]])
+    transmission = _transmissions(linkages, posed.sides[:, 0], way, turns)
+    if constraints.crank is not None:
+        good &= turns
+    if constraints.transmission is not None:
+        good &= transmission >= constraints.transmission - 1e-9
+    if constraints.length_ratio is not None:
+        good &= arcs.max(axis=1) <= constraints.length_ratio * arcs.min(axis=1)
+    if constraints.order:
+        good &= clean
+    good &= hinges_within(linkages, constraints.pivots.longitude, constraints.pivots.latitude)
+    return [k for k in np.lexsort((-transmission, ~clean)).tolist() if good[k]]
+
+
+def _posed_answer(
+    task: SynthesisTask, posed: PosedLinkages, ways: _Ways, poses: SphericalPoses, k: int
+) -> Answer:
+    """A linkage as an answer, with what it misses of each pose."""
+    row, attachment = posed.linkages[k : k + 1], posed.attachment[k : k + 1]
+    drawn = spherical_motion(row, ways.angles[k], posed.sides[k, :1])
+    errors = _arcs_between(coupler_points(drawn, row)[0], poses.places)
+    turn = _arcs_between(coupler_headings(drawn, row, attachment)[0], poses.headings)
+    return _answer(
+        task, posed.linkages[k], float(posed.sides[k, 0]), ways.angles[k], float(ways.senses[k]), errors,
+        float(posed.attachment[k]), {"turn_error": (float(turn.max()), "rad")},
+    )  # fmt: skip
 
 
 def kept_rows(answers: list[Answer]) -> list[Array]:
@@ -594,6 +648,7 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
     exact = len(crank) if wanted.targets is not None and len(crank) <= 5 else wanted.exact
     first, second = crank, rocker
     if exact is not None and len(crank) != exact:
+        # Chebyshev's spacing of the exact positions
         share = 0.5 - 0.5 * np.cos(np.pi * (2 * np.arange(exact) + 1) / (2 * exact))
         first, second = wanted_angles(wanted, share)
     variables, side = _function_starts(first, second)
@@ -604,27 +659,15 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
     variables, side = _squares(variables[best], side[best], first[some], second[some]), side[best]
     progress(0.5)
     keeps = _keeps(wanted)
-    errors = _function_errors(variables, side, first, second)
-    worst = np.abs(errors).max(axis=1, initial=0.0)
+    worst = np.abs(_function_errors(variables, side, first, second)).max(axis=1, initial=0.0)
     worst = np.where(keeps(variables), worst, np.inf)
-    if exact is not None:
-        worst = np.where(worst < 1e-9, worst, np.inf)
-        all_errors = _function_errors(variables, side, crank, rocker)
-        rank = np.abs(all_errors).max(axis=1, initial=0.0)
-        if len(crank) == exact:
-            rank = -np.nan_to_num(np.arccos(np.abs(transmission_cosines(_frames(variables))).max(axis=1)))
-        order = np.lexsort((rank, ~np.isfinite(worst)))
-    else:
+    if exact is None:
         order = np.argsort(worst, kind="stable")
-    chosen: list[int] = []
-    for k in order.tolist():
-        # a hinge and the point opposite to it are the same: arcs x and pi - x
-        folded = np.minimum(variables[:, 2:], np.pi - variables[:, 2:])
-        alike = (np.allclose(folded[k], folded[j], rtol=1e-3, atol=1e-4) for j in chosen)
-        if np.isfinite(worst[k]) and not any(alike):
-            chosen.append(k)
-        if len(chosen) == (REFINED if exact is None else 4 * wanted.answers):
-            break
+    else:
+        worst = np.where(worst < 1e-9, worst, np.inf)
+        rank = _ranks_of_exact(variables, side, crank, rocker, only_exact=len(crank) == exact)
+        order = np.lexsort((rank, ~np.isfinite(worst)))
+    chosen = _unlike(variables, worst, order, REFINED if exact is None else 4 * wanted.answers)
     rows = [variables[k] for k in chosen]
     if exact is None:
         for count, k in enumerate(chosen):
@@ -632,17 +675,7 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
                 break
             rows[count] = _lessen(rows[count], side[k : k + 1], crank, rocker, keeps)
             progress(0.5 + 0.5 * (count + 1) / len(chosen))
-    answers = []
-    for row, k in zip(rows, chosen, strict=True):
-        missed = _function_errors(row[None], side[k : k + 1], crank, rocker)[0]
-        if not np.isfinite(missed).all():
-            continue
-        angles = crank + float(np.angle(np.exp(1j * row[0])))
-        answer = _answer(
-            task, _frames(row[None])[0], float(side[k]), angles, 1.0 if crank[-1] > 0 else -1.0, missed
-        )
-        if not wanted.constraints.order or answer.defects.none:
-            answers.append(answer)
+    answers = list(_answers_of_functions(task, rows, side[chosen], crank, rocker))
     progress(1.0)
     if not answers:
         what = _("no linkage keeps everything that is required")
@@ -653,6 +686,46 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
         task, tuple(answers[: wanted.answers]), examined=GRID * GRID // 2, complete=not stop(),
         values=np.column_stack([crank, rocker]),
     )  # fmt: skip
+
+
+def _ranks_of_exact(variables: Array, side: Array, crank: Array, rocker: Array, *, only_exact: bool) -> Array:
+    """What linkages with exact positions are sorted by: the greatest error elsewhere, else the transmission."""
+    if only_exact:
+        cosines = np.abs(transmission_cosines(_frames(variables))).max(axis=1)
+        # beyond one where the linkage does not close all round: it has no such angle, and comes last
+        with np.errstate(invalid="ignore"):
+            return -np.nan_to_num(np.arccos(cosines))
+    return np.abs(_function_errors(variables, side, crank, rocker)).max(axis=1, initial=0.0)
+
+
+def _unlike(variables: Array, worst: Array, order: IntArray, most: int) -> list[int]:
+    """Numbers of the first linkages in an order, of those that are alike one."""
+    # a hinge and the point opposite to it are the same: arcs x and pi - x
+    folded = np.minimum(variables[:, 2:], np.pi - variables[:, 2:])
+    chosen: list[int] = []
+    for k in order.tolist():
+        alike = (np.allclose(folded[k], folded[j], rtol=1e-3, atol=1e-4) for j in chosen)
+        if np.isfinite(worst[k]) and not any(alike):
+            chosen.append(k)
+        if len(chosen) == most:
+            break
+    return chosen
+
+
+def _answers_of_functions(
+    task: SynthesisTask, rows: Sequence[Array], sides: Array, crank: Array, rocker: Array
+) -> Iterator[Answer]:
+    """Linkages as answers: those that close at all angles, without defects where the order is required."""
+    for row, side in zip(rows, sides, strict=True):
+        missed = _function_errors(row[None], np.array([side]), crank, rocker)[0]
+        if not np.isfinite(missed).all():
+            continue
+        angles = crank + float(np.angle(np.exp(1j * row[0])))
+        answer = _answer(
+            task, _frames(row[None])[0], float(side), angles, 1.0 if crank[-1] > 0 else -1.0, missed
+        )
+        if not task.synthesis.constraints.order or answer.defects.none:
+            yield answer
 
 
 def _frames(variables: Any) -> Any:

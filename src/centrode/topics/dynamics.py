@@ -226,7 +226,7 @@ MODES = Topic(
             ),
         ),
         samples=False,
-        animation=Lazily("centrode.animation.modes", "animate_modes"),
+        animation=Lazily("centrode.animation.animate", "animate_modes"),
         animation_file="mode-1.gif",
         animation_help=mark("Also write an animation of every mode."),
     ),

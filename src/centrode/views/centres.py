@@ -48,9 +48,8 @@ from centrode.sheets.texts import (
     Text,
     Title,
 )
-from centrode.views.columns import instant_columns
+from centrode.views.columns import instant_columns, without_rounding
 from centrode.views.instants import body_text, instant_place, instant_title, pair_text
-from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr

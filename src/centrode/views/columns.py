@@ -1,13 +1,13 @@
-"""Columns of datasets: which variables a table of a motion has, in which order and under which names."""
+"""Columns of datasets: which variables a table of a motion has, in which order, under which names and how rounded."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations_with_replacement, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from centrode.errors import STATUSES_NOT_REACHED, Status
 from centrode.quantities import STATUS_WORDS
@@ -16,8 +16,11 @@ from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
-    from numpy.typing import NDArray
 
+Array: TypeAlias = NDArray[np.float64]
+
+ROUNDING = 1e-12
+"""Share of the greatest number beside it below which a number that is shown is rounding."""
 VARIABLES = (
     "turned",
     "moment_of_loads",
@@ -219,3 +222,10 @@ def instant_columns(dataset: xarray.Dataset, samples: NDArray[np.intp]) -> Itera
     values = dataset["drive_value"].values[samples]
     for number, (name, unit) in enumerate(zip(dataset["drive"].values, drive_units(dataset), strict=True)):
         yield Column(f"drive_{name}", values[:, number], unit)
+
+
+def without_rounding(values: ArrayLike) -> Array:
+    """Numbers (..., n) with zero in place of what rounding leaves of it beside the greatest of each n."""
+    numbers = np.asarray(values, dtype=np.float64)
+    size = np.max(np.abs(numbers), axis=-1, keepdims=True, initial=0.0)
+    return np.where(np.abs(numbers) < ROUNDING * size, 0.0, numbers)

@@ -10,7 +10,7 @@ import numpy as np
 
 from centrode.dynamics.bearings.reaction_series import ReactionKind
 from centrode.dynamics.motion_extremes import extremes_of_motion
-from centrode.dynamics.steady_motion.closing_balance import closing_balance
+from centrode.dynamics.steady_motion.machine import closing_balance
 from centrode.errors import CentrodeError
 from centrode.model.reading import FRAME
 from centrode.sheets.sheet import Block, Chapter, Check, Items, Section

@@ -28,7 +28,7 @@ from centrode.sheets.sheet import (
 from centrode.sheets.texts import NOTHING, Counted, Joined, Name, Number, Sentence, Text, Title
 from centrode.views import structure
 from centrode.views.abscissa import CHANGE_POINT, LIMIT, events, motion_abscissa, over_drive, reached_part
-from centrode.views.columns import coefficients_table, counted_statuses, motion_table
+from centrode.views.columns import coefficients_table, counted_statuses, motion_table, without_rounding
 from centrode.views.instants import place_number
 from centrode.views.limits import reached_text, unreached_failure
 from centrode.views.motion_plots import (
@@ -43,7 +43,6 @@ from centrode.views.motion_plots import (
 )
 from centrode.views.motion_tables import tables_chapter
 from centrode.views.reactions import self_locking_samples, self_locking_text
-from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray

@@ -41,7 +41,7 @@ from centrode.sheets.texts import (
     Text,
     Title,
 )
-from centrode.views.columns import VARIABLES, drive_units, rows_shown, status_column
+from centrode.views.columns import VARIABLES, drive_units, rows_shown, status_column, without_rounding
 from centrode.views.energy_balance import (
     ADAPTIVE,
     ENERGIES_CAPTION,
@@ -72,7 +72,6 @@ from centrode.views.motion_plots import (
     quantities_panel,
     quantity_label,
 )
-from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -39,7 +39,7 @@ from centrode.sheets.texts import (
     Title,
     Unit,
 )
-from centrode.views.columns import motion_table, rows_shown
+from centrode.views.columns import motion_table, rows_shown, without_rounding
 from centrode.views.energy_balance import (
     ADAPTIVE,
     ENERGIES_CAPTION,
@@ -53,7 +53,6 @@ from centrode.views.energy_balance import (
 )
 from centrode.views.motion_events import marked_events
 from centrode.views.motion_plots import over_samples, quantities_panel, quantity_label
-from centrode.views.rounding import without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr

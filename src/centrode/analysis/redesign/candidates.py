@@ -15,9 +15,9 @@ from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotate_v
 from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
 from centrode.kinematics.dyads import solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.kinematics.preparation import Ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
-from centrode.model.files import value_at, with_value
+from centrode.model.files import value_at, with_value, with_values
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.placement import replace_placed
 from centrode.model.reading import FrozenMap
@@ -649,3 +649,43 @@ def _is_slider(prepared: Ready, lengths: _Lengths, crank: str, point: str) -> bo
             on_frame = len(rails) == 1 and rails[0].on == FRAME
             return on_frame and len(rods) == 1 and _on_crank(lengths, crank, rods[0].centre)
     return False
+
+
+def with_numbers(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mechanism:
+    """The mechanism with other numbers, assembled as it was.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    values : path -> number [SI] or text with a unit
+
+    Returns
+    -------
+    Mechanism
+        Where dimensions change, its assembly names the sides, and the initial angles of its groups are those of the
+        new position: angles of before would be refused, or choose another assembly.
+
+    Raises
+    ------
+    InputError
+        A path without a number, a value that does not fit.
+    """
+    changed = with_values(mechanism, values)
+    numbers = {path: value_at(changed, path) for path in values}
+    dimensions = [path for path in values if _is_dimension(mechanism, path)]
+    if not dimensions:
+        return changed
+    prepared = ready(mechanism)
+    varying = tuple(Varying(path, 0.0, 0.0, 0.0, "", 1.0) for path in dimensions)
+    redesigned = Candidates(prepared, varying).mechanism(np.array([numbers[path] for path in dimensions]))
+    rest = {path: value for path, value in values.items() if path not in dimensions}
+    return with_values(redesigned, rest) if rest else redesigned
+
+
+def _is_dimension(mechanism: Mechanism, path: str) -> bool:
+    """Whether positions depend on a number."""
+    try:
+        dimensions_of(mechanism, {path: value_at(mechanism, path)})
+    except InputError:
+        return False
+    return True

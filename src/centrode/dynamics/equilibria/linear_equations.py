@@ -20,8 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.equilibria.controllers_at_rest import controls_at_rest
-from centrode.dynamics.equilibria.friction_openings import graph_of_openings
-from centrode.dynamics.forward_dynamics.contacts import Contact, StopPush, stop_coordinate
+from centrode.dynamics.forward_dynamics.contacts import FREE, Contact, StopPush, stop_coordinate
 from centrode.dynamics.forward_dynamics.controllers import states_of
 from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive, LoadAlong
 from centrode.dynamics.forward_dynamics.free_loads import (
@@ -555,3 +554,35 @@ def _check_times(loads: Sequence[LoadAlong]) -> None:
         if "t" in load.term.amount.uses:
             what = _("it depends on time, and at rest nothing may")
             raise InputError(load.label, what, _("write it as a function of the position"))
+
+
+def graph_of_openings(equations: EquationsOfMotion, states: int, time: str) -> Graph:
+    """Coordinates along which contacts act, and force, mass and rows of the openings of pressed joints.
+
+    Parameters
+    ----------
+    equations : with numbers over expressions
+    states : number of the states of controllers, which follow the joint coordinates
+    time : name of its variable
+    """
+    q = [variable(f"coordinate {k}") for k in range(equations.size + states)]
+    terms = equations.terms(
+        EXPRESSIONS,
+        equations.tree.values(EXPRESSIONS, q[: equations.size]),
+        [0.0] * equations.size,
+        variable(time),
+        [FREE] * len(equations.contacts),
+        q[equations.size :],
+    )
+    outputs: dict[str, Node] = {}
+    for row, number in equations.contact_rows:
+        outputs |= {f"along {number} {i}": as_node(x) for i, x in terms.rows[row].items()}
+    for k, ways in terms.openings.items():
+        for j, way in enumerate(ways):
+            outputs[f"force {k} {j}"] = as_node(way.force)
+            outputs |= {f"mass {k} {j} {i}": as_node(x) for i, x in way.mass.items()}
+            outputs |= {
+                f"rows {k} {j} {i}": as_node(x) for i, x in way.rows.items() if i < equations.equations
+            }
+            outputs |= {f"own {k} {j} {i}": as_node(x) for i, x in way.along.items()}
+    return Graph(outputs)

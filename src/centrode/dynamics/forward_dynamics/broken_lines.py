@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Any, TypeAlias
 
-from centrode.dynamics.loads import SLACK, EnergyClass, LoadDiagram, LoadTable, Situation
+from centrode.dynamics.loads import SLACK, ContinuousLaw, EnergyClass, LoadDiagram, LoadTable, Situation
 from centrode.laws.rises import whole_turns
 
 Number: TypeAlias = Any
 
 
 @dataclass(frozen=True)
-class BrokenLine:
+class BrokenLine(ContinuousLaw):
     """Straight lines between rows of a place and a force; NaN beside them.
 
     Attributes
@@ -27,11 +27,7 @@ class BrokenLine:
     rows: tuple[tuple[Number, Number], ...]
     of: str
     period: Number = 0.0
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
     energy_class = EnergyClass.OTHER
-    by_place = False
 
     @property
     def uses(self) -> frozenset[str]:

@@ -35,18 +35,19 @@ from centrode.numerics.scans import evaluate
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+# how near a step may come to a change point, and how far it is taken back
+TOO_NEAR = 0.05
+"""A change point is passed from a place from which the fastest link turns by more than this up to it."""
+ROWS = 1024
+"""Steps taken again at most on the way to a place from which a change point is passed."""
+# how independent closures are that lose rank, or nearly so
 DOUBTFUL = 1e-3
 """Closures that come nearer to losing rank than this, and do not, leave it doubtful how the motion goes on."""
 LOST = 1e-4
-"""Closures that are no more independent than this, and no smooth motion through the place where they lose rank."""
-TOO_NEAR = 0.05
-"""A change point is passed from a place from which the fastest link turns by more than this up to it."""
+"""Closures that are no more independent than this have lost rank, even where no smooth motion leads through."""
+# what is compared behind a change point
 ENERGY = 1e-7
 """Energies before and behind a change point agree to this share of the kinetic energy."""
-
-
-ROWS = 1024
-"""Steps taken again at most on the way to a place from which a change point is passed."""
 
 
 @dataclass(frozen=True)

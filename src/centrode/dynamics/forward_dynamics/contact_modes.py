@@ -78,10 +78,10 @@ class ContactModes:
         held, rested = self._candidates(state, felt, let_go, comes)
         if held and felt.is_late:
             felt = states.forces_at(float(state[0, 0]), state[HEADER:, 0].tolist())
-        if states.pressed:
+        if states.pressed_numbers:
             felt, ambiguity = self._with_limits(state, felt, held, let_go)
         forces = self._held_forces(state, felt, held, let_go) if held else {}
-        if states.pressed:
+        if states.pressed_numbers:
             self._set_weights(state, felt, forces, turned)
         events: list[Event] = []
         for k in states.rows:
@@ -244,7 +244,7 @@ class ContactModes:
         """Forces along rows with friction by coefficients of what slips as great as what presses."""
         slips = {
             k: (self.states.rows[k], self.states.get(state, "sense", k))
-            for k in self.states.pressed
+            for k in self.states.pressed_numbers
             if k not in held
         }
         slips = {k: (row, sense) for k, (row, sense) in slips.items() if sense}
@@ -262,7 +262,7 @@ class ContactModes:
         """Forces along rows in the modes that are still set."""
         active = [k for k in self.states.rows if self.states.get(state, "active", k)]
         rows = self._independent(felt, active)
-        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self.states.pressed], 0.0))
+        forces = self._row_forces(state, felt, dict.fromkeys([*active, *self.states.pressed_numbers], 0.0))
         if rows:
             right = felt.free + felt.mobility @ forces
             forces[rows] -= np.linalg.solve(felt.mobility[rows][:, rows], right[rows])
@@ -272,7 +272,7 @@ class ContactModes:
         self, state: Array, felt: ContactForces, held: Mapping[int, float], turned: Collection[int]
     ) -> None:
         """What presses from here on: signs of normal forces, and directions of the forces of pins."""
-        senses = {k: self.states.get(state, "sense", k) for k in self.states.pressed}
+        senses = {k: self.states.get(state, "sense", k) for k in self.states.pressed_numbers}
         lost = {k: (self.states.get(state, "first", k), self.states.get(state, "second", k)) for k in turned}
         weights = felt.presses.weights(self._row_forces(state, felt, held), senses, lost)
         for k, (first, second) in weights.items():
@@ -283,8 +283,8 @@ class ContactModes:
         """The sentence that names the friction which has no or several solutions."""
         time = float(state[0, 0])
         felt = self.states.forces_at(time, state[HEADER:, 0].tolist())
-        slips = [k for k in self.states.pressed if self.states.get(state, "sense", k)] or list(
-            self.states.pressed
+        slips = [k for k in self.states.pressed_numbers if self.states.get(state, "sense", k)] or list(
+            self.states.pressed_numbers
         )
         held = [self.states.rows[k] for k in self.states.rows if self.states.get(state, "active", k)]
         feedback = felt.presses.feedback(felt.mobility, held, {k: self.states.rows[k] for k in slips})

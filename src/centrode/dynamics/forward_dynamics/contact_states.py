@@ -59,7 +59,7 @@ class ContactStates:
         return {number: row - rows[0][0] for row, number in rows}
 
     @cached_property
-    def pressed(self) -> tuple[int, ...]:
+    def pressed_numbers(self) -> tuple[int, ...]:
         """Numbers of the contacts with friction by coefficients."""
         return pressed_numbers(self.contacts)
 
@@ -128,10 +128,10 @@ class ContactStates:
         by_row = numbers[4 * count : 4 * count + rows * width].reshape(rows, width)
         rest = numbers[4 * count + rows * width :]
         conditions = len(equations.conditions)
-        pressed = rest[kept + conditions :].reshape(len(self.pressed), 2, 1 + rows)
+        pressed = rest[kept + conditions :].reshape(len(self.pressed_numbers), 2, 1 + rows)
         presses = JointPresses(
-            self.pressed,
-            tuple(self.contacts[k] for k in self.pressed),
+            self.pressed_numbers,
+            tuple(self.contacts[k] for k in self.pressed_numbers),
             pressed[:, :, 0],
             pressed[:, :, 1:],
         )

@@ -30,7 +30,16 @@ from centrode.dynamics.load_coordinates import (
     joint_of_hinge,
     points_of,
 )
-from centrode.dynamics.loads import Constant, EnergyClass, Friction, LoadDiagram, LoadLaw, LoadTerm, Situation
+from centrode.dynamics.loads import (
+    Constant,
+    ContinuousLaw,
+    EnergyClass,
+    Friction,
+    LoadDiagram,
+    LoadLaw,
+    LoadTerm,
+    Situation,
+)
 from centrode.dynamics.state import is_none
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
@@ -315,18 +324,14 @@ PARALLEL = 1e-9
 
 
 @dataclass(frozen=True)
-class SmoothFriction:
+class SmoothFriction(ContinuousLaw):
     """What of a friction grows with the relative speed: -b (v - s) - c (v - s) |v - s|."""
 
     viscous: Number
     quadratic: Number
     drift: Number
-    uses: frozenset[str] = frozenset("v")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("v")
     energy_class = Friction.energy_class
-    by_place = False
 
     def __call__(self, now: Any) -> Number:
         slip = now.v if isinstance(self.drift, float) and self.drift == 0.0 else now.v - self.drift
@@ -334,19 +339,15 @@ class SmoothFriction:
 
 
 @dataclass(frozen=True)
-class StopPush:
+class StopPush(ContinuousLaw):
     """What a compliant stop exerts along its coordinate, whether it is closed or not: it pushes and never pulls."""
 
     least: Number | None
     most: Number | None
     stiffness: Number
     damping: Number
-    uses: frozenset[str] = frozenset("xv")
-    levels: tuple[float, ...] = ()
-    jumps: bool = False
-    depends_on_sense: bool = False
+    uses = frozenset("xv")
     energy_class = EnergyClass.STORED
-    by_place = False
 
     def energy(self, x: Number) -> Number:
         """Potential energy of its spring [J] at a value of its coordinate."""

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.forward_dynamics.contacts import conditions_of, contacts_of
 from centrode.dynamics.forward_dynamics.controllers import controls_of
-from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion
+from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMotion, KeptDrive
 from centrode.dynamics.forward_dynamics.free_loads import (
     DriveEffort,
     coordinate_of_drive,
@@ -29,26 +29,27 @@ from centrode.dynamics.forward_dynamics.initial_state import (
     initial_state,
 )
 from centrode.dynamics.forward_dynamics.integration import MotionIntegration
-from centrode.dynamics.forward_dynamics.kept_drives import kept_drives_of
 from centrode.dynamics.forward_dynamics.motion_steps import DURATION
 from centrode.dynamics.forward_dynamics.pressed_contacts import (
     pressed_contacts_of,
     refuse_undetermined_presses,
 )
 from centrode.dynamics.forward_dynamics.solvability import solvable_equations
-from centrode.dynamics.forward_dynamics.spanning_tree import (
-    JointCoordinate,
-    SpanningTree,
-    spanning_tree_of,
-)
+from centrode.dynamics.forward_dynamics.spanning_tree import JointCoordinate, SpanningTree, spanning_tree_of
 from centrode.dynamics.forward_dynamics.trajectory import Trajectory, trajectory_of, trajectory_points
 from centrode.dynamics.kinetostatics.friction import without_friction
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.masses import massless_links
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
+from centrode.kinematics.path import DrivenBy, path_of
+from centrode.laws import Law
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.executors import choose_executor
+from centrode.numerics.expressions import EXPRESSIONS, variable
+from centrode.numerics.initial_value_problems import TIME
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.structure.constraints import AngleDrive, DisplacementDrive, DistanceDrive, constraints_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -251,3 +252,46 @@ def free_motion_of(
     equations, rank = solvable_equations(equations, position.coordinates)
     refuse_undetermined_presses(equations, position.coordinates)
     return FreeMotion(mechanism, equations, position, equations.size - rank, equations.equations - rank)
+
+
+# Drives that keep their laws in a free motion.
+
+
+def kept_drives_of(mechanism: Mechanism, scale: float, keeps: Sequence[str]) -> tuple[KeptDrive, ...]:
+    """Drives that keep their laws, in the order of the constraints.
+
+    Parameters
+    ----------
+    scale : greatest length of the mechanism [m]
+    keeps : ids of drives
+
+    Raises
+    ------
+    NotComputedYet
+        The law of one has text formulas in its segments.
+    """
+    if not keeps:
+        return ()
+    driven: dict[str, DrivenBy] = {one.drive.id: one for one in path_of(mechanism, scale).driven}
+    found = []
+    for constraint in constraints_of(mechanism):
+        if (
+            isinstance(constraint, AngleDrive | DisplacementDrive | DistanceDrive)
+            and constraint.drive in keeps
+        ):
+            law = driven[constraint.drive].law
+            if not _is_traceable(law):
+                what = _("a drive that keeps a law with text formulas in its segments is not computed here")
+                repair = _("give a speed, a table, one formula, or segments with other curves")
+                raise NotComputedYet(f"[[drives]] {constraint.drive}", what, repair)
+            found.append(KeptDrive(constraint, driven[constraint.drive]))
+    return tuple(found)
+
+
+def _is_traceable(law: Law) -> bool:
+    """Whether a law can be traced: text formulas of segments are chosen by the value of the time."""
+    try:
+        law.jet(JetFunctions(EXPRESSIONS), Jet((variable(TIME), 1.0, 0.0)))
+    except TypeError:
+        return False
+    return True

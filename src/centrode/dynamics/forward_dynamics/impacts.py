@@ -166,7 +166,7 @@ class Impacts:
     def _bounces(self, hits: Iterable[int], grounded: set[int]) -> bool:
         """Whether all that hits flies off whatever forces there are, so that only speeds are needed behind it."""
         states = self.states
-        has_rows = len(states.rows) == len(states.contacts) and not states.pressed
+        has_rows = len(states.rows) == len(states.contacts) and not states.pressed_numbers
         return has_rows and all(states.contacts[k].restitution >= 1.0 and k not in grounded for k in hits)
 
     def _add_impulses(

@@ -9,7 +9,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.forward_dynamics.equations_of_motion import ContactMeasure, EquationsOfMotion
+from centrode.dynamics.forward_dynamics.contacts import ContactMode
+from centrode.dynamics.forward_dynamics.equations_of_motion import ContactMeasure, EquationsOfMotion, Terms
 from centrode.dynamics.forward_dynamics.joint_state import JointState
 from centrode.dynamics.forward_dynamics.motion_problem import MotionNames, modes_of, worked_loads
 from centrode.dynamics.forward_dynamics.motion_steps import CROSSING, NEAR_MISS, Event, MotionSteps
@@ -117,76 +118,169 @@ def trajectory_of(
     scheme, executor : by which the steps were taken
     carried : names of what states hold, in order; what is followed alone if left out
     """
-    count, names, tree = equations.size, MotionNames.of(equations), equations.tree
-    mechanism = tree.mechanism
-    q, w = list(states[names.part(names.coordinates)]), list(states[names.part(names.speeds)])
+    names, mechanism = MotionNames.of(equations), equations.tree.mechanism
     n = len(times)
     with np.errstate(all="ignore"):
-        values = tree.values(ARRAYS, q)
-        fixed = dict(zip(carried, states, strict=False))
-        modes = modes_of(names, fixed.__getitem__) if carried else None
-        held = list(states[names.part(names.states)])
-        terms = equations.terms(ARRAYS, values, w, times, modes, held)
-        flags = {
-            row: fixed[name] > 0.5
-            for row, name in zip(equations.flagged_rows, names.flags, strict=True)
-            if modes is not None
-        }
-        moved = equations.motion(ARRAYS, terms, equations.system(ARRAYS, terms, flags or None))
-        a = [moved.accelerations.get(k, 0.0) for k in range(equations.size)]
-        forces = [moved.forces.get(row, 0.0) for row in range(len(terms.rows))]
-        jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, a, strict=True)]
-        state = equations.state(ARRAYS, values, jets, times)
-        kinetic = _row(equations.kinetic_energy(state), n)
-        potential = _row(equations.potential_energy(state), n)
-        works: dict[str, Array] = {}
-        free = np.zeros(n)
-        begun = _state_at_start(equations, names, steps)
-        for load in equations.loads:
-            energy = getattr(load.term.amount, "energy", None)
-            if energy is not None:
-                coordinate = load.term.coordinate
-                done = _row(energy(coordinate.value(begun)) - energy(coordinate.value(state)), n)
-                works[load.label] = works.get(load.label, 0.0) + done
-        followed = [equations.loads[k].label for k in worked_loads(equations)]
-        followed += [f"drive {kept.name}" for kept in equations.kept]
-        followed += [control.label for control in equations.controls]
-        followed += [contact.label for contact in equations.contacts]
-        for label, work in zip(followed, states[names.part(names.works)], strict=True):
-            works[label] = works.get(label, 0.0) + work
-            free = free + work
-        residual = kinetic + potential - free
-        began = float(equations.kinetic_energy(begun)) + float(equations.potential_energy(begun))
-        points = _orders([state.point(name) for name in trajectory_points(mechanism)], n)
+        solved = _solve_motion(equations, names, times, states, carried)
+        state = solved.state
+        energies = _energies(equations, names, steps, states, state, n)
+        multipliers, kept_forces = _closure_forces(equations, solved.forces[: equations.equations], n)
+        places, velocities, point_accelerations = _orders(
+            [state.point(name) for name in trajectory_points(mechanism)], n
+        )
         angles = _orders([(_angle(state, name),) for name in mechanism.links], n)[..., 0]
         slides = _orders([(state.slide(guide.id),) for guide in mechanism.guides], n)[..., 0]
         drives = _orders([(state.drive(drive),) for drive in mechanism.drives], n)[..., 0]
         attitudes, spins = _attitudes(mechanism, state, n)
-        in_contacts = _contact_forces(equations, moved.measures, forces, n)
-        forces = forces[: equations.equations]
-        multipliers = np.array([_row(x, n) for x in forces]).reshape(len(forces), n).T
-        kept = {
-            kept.name: -multipliers[:, equations.equations - len(equations.kept) + k]
-            for k, kept in enumerate(equations.kept)
-        }
-        if equations.dependent:
-            multipliers[:, sorted(equations.dependent)] = np.nan
-        gaps = [np.abs(_row(x, n)) for x in terms.values[: equations.equations]]
-        drifts = [np.abs(_row(x, n)) for x in terms.speeds[: equations.equations]]
-        outputs = np.array([_row(x, n) for x in terms.outputs]).reshape(-1, n).T
-        mode_numbers = np.array([_row(one.active, n) for one in modes or ()]).reshape(-1, n).T
-    return Trajectory(
-        times, np.array(q).T.reshape(n, count), np.array(w).T.reshape(n, count),
-        np.array([_row(x, n) for x in a]).T.reshape(n, count),
-        points[0], points[1], points[2], angles[0], angles[1], angles[2], attitudes, spins,
-        slides[0], slides[1], slides[2], drives[0], drives[1], drives[2],
-        kinetic, potential, works, residual - began, multipliers, kept,
-        np.max(gaps, axis=0, initial=0.0) if gaps else np.zeros(n),
-        np.max(drifts, axis=0, initial=0.0) if drifts else np.zeros(n),
-        _statuses(steps, times), steps.events, steps.ended, steps.cause, scheme, executor,
-        steps.rows.shape[1] - 1, steps.attempts, in_contacts, mode_numbers,
-        outputs,
-    )  # fmt: skip
+        return Trajectory(
+            time=times,
+            coordinates=_columns(states[names.part(names.coordinates)], n),
+            speeds=_columns(states[names.part(names.speeds)], n),
+            accelerations=_columns(solved.accelerations, n),
+            places=places,
+            velocities=velocities,
+            point_accelerations=point_accelerations,
+            angles=angles[0],
+            angular_velocities=angles[1],
+            angular_accelerations=angles[2],
+            attitudes=attitudes,
+            spins=spins,
+            slides=slides[0],
+            slide_speeds=slides[1],
+            slide_accelerations=slides[2],
+            drives=drives[0],
+            drive_speeds=drives[1],
+            drive_accelerations=drives[2],
+            kinetic_energy=energies.kinetic,
+            potential_energy=energies.potential,
+            works=energies.works,
+            energy_residual=energies.residual,
+            multipliers=multipliers,
+            kept_forces=kept_forces,
+            position_residual=_greatest(solved.terms.values[: equations.equations], n),
+            velocity_residual=_greatest(solved.terms.speeds[: equations.equations], n),
+            statuses=_statuses(steps, times),
+            events=steps.events,
+            ended=steps.ended,
+            cause=steps.cause,
+            scheme=scheme,
+            executor=executor,
+            steps=steps.rows.shape[1] - 1,
+            attempts=steps.attempts,
+            contact_forces=_contact_forces(equations, solved.measures, solved.forces, n),
+            contact_modes=_columns([one.active for one in solved.modes or ()], n),
+            outputs=_columns(solved.terms.outputs, n),
+        )
+
+
+@dataclass(frozen=True)
+class _SolvedMotion:
+    """The equations of motion solved at instants.
+
+    Attributes
+    ----------
+    terms : of the equations, with the values and speeds of their closures
+    modes : of the contacts; None where there are none
+    accelerations : of the joint coordinates [rad/s^2 or m/s^2]
+    forces : of every row, closures first [N or N m]
+    measures : of the contacts
+    state : places, velocities and accelerations of everything
+    """
+
+    terms: Terms
+    modes: Sequence[ContactMode] | None
+    accelerations: list[Number]
+    forces: list[Number]
+    measures: Sequence[ContactMeasure]
+    state: JointState
+
+
+def _solve_motion(
+    equations: EquationsOfMotion, names: MotionNames, times: Array, states: Array, carried: Sequence[str]
+) -> _SolvedMotion:
+    q, w = list(states[names.part(names.coordinates)]), list(states[names.part(names.speeds)])
+    values = equations.tree.values(ARRAYS, q)
+    fixed = dict(zip(carried, states, strict=False))
+    modes = modes_of(names, fixed.__getitem__) if carried else None
+    held = list(states[names.part(names.states)])
+    terms = equations.terms(ARRAYS, values, w, times, modes, held)
+    # a contact's row counts at the instants at which it is closed, sticks or holds
+    flags = {
+        row: fixed[name] > 0.5
+        for row, name in zip(equations.flagged_rows, names.flags, strict=True)
+        if modes is not None
+    }
+    moved = equations.motion(ARRAYS, terms, equations.system(ARRAYS, terms, flags or None))
+    accelerations = [moved.accelerations.get(k, 0.0) for k in range(equations.size)]
+    forces = [moved.forces.get(row, 0.0) for row in range(len(terms.rows))]
+    # Taylor's coefficients by time: half of the second derivative
+    jets = [Jet((x, y, 0.5 * z)) for x, y, z in zip(q, w, accelerations, strict=True)]
+    state = equations.state(ARRAYS, values, jets, times)
+    return _SolvedMotion(terms, modes, accelerations, forces, moved.measures, state)
+
+
+@dataclass(frozen=True)
+class _Energies:
+    """Energies (n) [J], works since the start by their label, and the energy that neither accounts for."""
+
+    kinetic: Array
+    potential: Array
+    works: dict[str, Array]
+    residual: Array
+
+
+def _energies(
+    equations: EquationsOfMotion,
+    names: MotionNames,
+    steps: MotionSteps,
+    states: Array,
+    state: JointState,
+    n: int,
+) -> _Energies:
+    kinetic = _row(equations.kinetic_energy(state), n)
+    potential = _row(equations.potential_energy(state), n)
+    works: dict[str, Array] = {}
+    begun = _state_at_start(equations, names, steps)
+    # what a load stores follows from where it stands, so its work needs no integration
+    for load in equations.loads:
+        energy = getattr(load.term.amount, "energy", None)
+        if energy is not None:
+            coordinate = load.term.coordinate
+            done = _row(energy(coordinate.value(begun)) - energy(coordinate.value(state)), n)
+            works[load.label] = works.get(load.label, 0.0) + done
+    followed = [equations.loads[k].label for k in worked_loads(equations)]
+    followed += [f"drive {kept.name}" for kept in equations.kept]
+    followed += [control.label for control in equations.controls]
+    followed += [contact.label for contact in equations.contacts]
+    free = np.zeros(n)
+    for label, work in zip(followed, states[names.part(names.works)], strict=True):
+        works[label] = works.get(label, 0.0) + work
+        free = free + work
+    began = float(equations.kinetic_energy(begun)) + float(equations.potential_energy(begun))
+    return _Energies(kinetic, potential, works, kinetic + potential - free - began)
+
+
+def _closure_forces(
+    equations: EquationsOfMotion, forces: Sequence[Number], n: int
+) -> tuple[Array, dict[str, Array]]:
+    """Multipliers of the closures (n, equations), and the forces of the drives that keep their laws."""
+    multipliers = _columns(forces, n)
+    first = equations.equations - len(equations.kept)
+    kept = {one.name: -multipliers[:, first + k] for k, one in enumerate(equations.kept)}
+    # redundant constraints share a force in any way
+    if equations.dependent:
+        multipliers[:, sorted(equations.dependent)] = np.nan
+    return multipliers, kept
+
+
+def _columns(rows: Sequence[Number] | Array, n: int) -> Array:
+    """Rows of numbers or arrays (n) as columns of one array (n, rows)."""
+    return np.array([_row(row, n) for row in rows]).reshape(len(rows), n).T
+
+
+def _greatest(rows: Sequence[Number], n: int) -> Array:
+    """The greatest size of the rows at each of n instants; zero where there are none."""
+    return np.max(np.abs(_columns(rows, n)), axis=1, initial=0.0)
 
 
 def _contact_forces(
@@ -197,8 +291,8 @@ def _contact_forces(
     found = []
     for number, one in enumerate(measures):
         held = -forces[rows[number]] if number in rows else 0.0
-        found.append(_row(one.strength + held, n))
-    return np.array(found).reshape(-1, n).T
+        found.append(one.strength + held)
+    return _columns(found, n)
 
 
 def _state_at_start(equations: EquationsOfMotion, names: MotionNames, steps: MotionSteps) -> JointState:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
 from centrode.dynamics.steady_motion.speed import MeanSpeed
@@ -75,3 +77,25 @@ def results_of_flywheel(mechanism: Mechanism, flywheel: Flywheel) -> MachineResu
 def is_machine(mechanism: Mechanism) -> bool:
     """Whether a description has a machine with a mean speed, and masses or loads that move it unevenly."""
     return mechanism.runs_at_mean_speed and has_masses_or_loads(mechanism)
+
+
+def closing_balance(results: MachineResults) -> xr.Dataset:
+    """Reactions in the real motion at the first instant of the description, else where the drive accelerates most.
+
+    They close the balance of a machine, which the balancing moment of its links and the inertia moment of its flywheel
+    drive: of that one sample `moment_of_links` + `inertia` * `drive_acceleration` is `driving_moment`, within the
+    shares `driving_error` and `reaction_loss`; `driving_residual` is what is missing.
+
+    Raises
+    ------
+    InputError, MotionError, NotComputedYet
+        As `reactions`.
+    """
+    steady = results.steady
+    if results.instants is not None:
+        at = float(results.instants["drive_value"].values[0, 0])
+    else:
+        greatest = int(np.nanargmax(np.abs(steady["drive_acceleration"].values)))
+        at = float(steady["drive_value"].values[greatest, 0])
+    # of one motion all of it: another meaning of the mean speed has another speed here
+    return reactions(results.mechanism, at=[at], motion="real", friction=False).isel(sample=0)

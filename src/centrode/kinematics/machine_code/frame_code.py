@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import struct
+from dataclasses import dataclass
 from enum import IntEnum
 
 from centrode.kinematics.machine_code.variables import AWAY, MOST, TURN, WHOLE
@@ -98,13 +99,13 @@ def _vector(x: float, width: int) -> str:
 def _extreme(name: str, predicate: str, start: float, width: int) -> str:
     """The least or greatest of a row; NaN where one is."""
     vector = f"<{width} x double>"
+    loop = _Loop("i", "count", step=width)
     lines = [
         f"define internal double @{name}(ptr %row, i64 %count) {{",
         "entry:",
         f"  %last = sub i64 %count, {width}",
         "  br label %loop",
-        "loop:",
-        "  %i = phi i64 [ 0, %entry ], [ %next, %loop ]",
+        loop.head,
         f"  %best = phi {vector} [ {_vector(start, width)}, %entry ], [ %better, %loop ]",
         f"  %bad = phi {vector} [ zeroinitializer, %entry ], [ %worse, %loop ]",
         # the last vector ends with the row
@@ -116,9 +117,7 @@ def _extreme(name: str, predicate: str, start: float, width: int) -> str:
         f"  %better = select <{width} x i1> %is, {vector} %x, {vector} %best",
         f"  %none = fcmp uno {vector} %x, %x",
         f"  %worse = select <{width} x i1> %none, {vector} %x, {vector} %bad",
-        f"  %next = add i64 %i, {width}",
-        "  %more = icmp slt i64 %next, %count",
-        "  br i1 %more, label %loop, label %done",
+        loop.end,
         "done:",
         f"  %r0 = extractelement {vector} %better, i32 0",
         f"  %n0 = extractelement {vector} %worse, i32 0",
@@ -136,6 +135,44 @@ def _extreme(name: str, predicate: str, start: float, width: int) -> str:
     return "\n".join(lines)
 
 
+@dataclass(frozen=True)
+class _Loop:
+    """A loop whose counter grows from zero by a step while it is below a count; at least one round is taken.
+
+    Attributes
+    ----------
+    counter : its name
+    count : name of the count
+    first, last : its first block, and that from which it goes on
+    behind, before : the blocks behind it and before it
+    step : of the counter
+    """
+
+    counter: str
+    count: str
+    first: str = "loop"
+    last: str = "loop"
+    behind: str = "done"
+    before: str = "entry"
+    step: int = 1
+
+    @property
+    def head(self) -> str:
+        """What the first block begins with."""
+        came = f"[ 0, %{self.before} ], [ %{self.counter}.next, %{self.last} ]"
+        return f"{self.first}:\n  %{self.counter} = phi i64 {came}"
+
+    @property
+    def end(self) -> str:
+        """What the last block ends with."""
+        counter = self.counter
+        return (
+            f"  %{counter}.next = add i64 %{counter}, {self.step}\n"
+            f"  %{counter}.more = icmp slt i64 %{counter}.next, %{self.count}\n"
+            f"  br i1 %{counter}.more, label %{self.first}, label %{self.behind}"
+        )
+
+
 def _slot(name: str, slot: int, kind: str = "i64") -> str:
     return (
         f"  %{name}.slot = getelementptr i64, ptr %table, i64 {slot}\n"
@@ -145,6 +182,7 @@ def _slot(name: str, slot: int, kind: str = "i64") -> str:
 
 def _gather() -> str:
     """Put numbers where a kernel looks for its inputs: two slots say which they are and how many."""
+    loop = _Loop("i", "count")
     return f"""
 define internal void @gather(ptr %table, i64 %slot, i64 %kernel) {{
 entry:
@@ -159,17 +197,14 @@ entry:
 {_slot("values", FrameSlot.VALUES, "ptr")}
   %some = icmp sgt i64 %count, 0
   br i1 %some, label %loop, label %done
-loop:
-  %i = phi i64 [ 0, %entry ], [ %next, %loop ]
+{loop.head}
   %which.at = getelementptr i64, ptr %from, i64 %i
   %which = load i64, ptr %which.at, align 8
   %value.at = getelementptr double, ptr %values, i64 %which
   %value = load double, ptr %value.at, align 8
   %to = getelementptr double, ptr %inputs, i64 %i
   store double %value, ptr %to, align 8
-  %next = add i64 %i, 1
-  %more = icmp slt i64 %next, %count
-  br i1 %more, label %loop, label %done
+{loop.end}
 done:
   ret void
 }}"""
@@ -200,13 +235,13 @@ def _nearest_whole(name: str, value: str) -> str:
 
 def _centre() -> str:
     """Centre of a link's angle; NaN where it does not stay near enough to one, or winds otherwise."""
+    loop = _Loop("i", "count", behind="judge")
     return f"""
 define internal double @centre(ptr %raw, ptr %wound, i64 %count, i64 %start, double %initial) {{
 entry:
   %before = load double, ptr %raw, align 8
   br label %loop
-loop:
-  %i = phi i64 [ 0, %entry ], [ %next, %loop ]
+{loop.head}
   %last = phi double [ %before, %entry ], [ %angle, %loop ]
   %turns = phi double [ 0.0, %entry ], [ %turned, %loop ]
   %most = phi double [ 0.0, %entry ], [ %wider, %loop ]
@@ -237,9 +272,7 @@ loop:
   %is.lower = fcmp olt double %rest, %low
   %lower = select i1 %is.lower, double %rest, double %low
   %summed = fadd double %sum, %rest
-  %next = add i64 %i, 1
-  %more = icmp slt i64 %next, %count
-  br i1 %more, label %loop, label %judge
+{loop.end}
 judge:
   %from = fsub double %initial, %there
   %from.share = fmul double %from, {_number(1.0 / TURN)}
@@ -270,6 +303,8 @@ def _turn(width: int) -> str:
     """Add the whole turns to the angles of the samples, and put these where they belong."""
     vector = f"<{width} x double>"
     whole = _vector(WHOLE, width)
+    links = _Loop("k", "many", "link", "link.end")
+    samples = _Loop("i", "count", behind="link.end", before="link", step=width)
     return f"""
 define internal void @turn(ptr %table) {{
 entry:
@@ -282,8 +317,7 @@ entry:
   %last = sub i64 %count, {width}
   %some = icmp sgt i64 %many, 0
   br i1 %some, label %link, label %done
-link:
-  %k = phi i64 [ 0, %entry ], [ %k.next, %link.end ]
+{links.head}
   %first = mul i64 %k, %count
   %angle.row = getelementptr double, ptr %angles, i64 %first
   %wound.row = getelementptr double, ptr %wound, i64 %first
@@ -294,8 +328,7 @@ link:
   %centre.in = insertelement {vector} poison, double %centre.one, i32 0
   %centre = shufflevector {vector} %centre.in, {vector} poison, <{width} x i32> zeroinitializer
   br label %loop
-loop:
-  %i = phi i64 [ 0, %link ], [ %next, %loop ]
+{samples.head}
   %beyond = icmp sgt i64 %i, %last
   %at = select i1 %beyond, i64 %last, i64 %i
   %angle.at = getelementptr double, ptr %angle.row, i64 %at
@@ -311,13 +344,9 @@ loop:
   %turned = fadd {vector} %angle, %more.turns
   %to = getelementptr double, ptr %to.row, i64 %at
   store {vector} %turned, ptr %to, align 8
-  %next = add i64 %i, {width}
-  %more = icmp slt i64 %next, %count
-  br i1 %more, label %loop, label %link.end
+{samples.end}
 link.end:
-  %k.next = add i64 %k, 1
-  %k.more = icmp slt i64 %k.next, %many
-  br i1 %k.more, label %link, label %done
+{links.end}
 done:
   ret void
 }}"""
@@ -325,6 +354,7 @@ done:
 
 def _reduce_mesh() -> str:
     """Compute the nodes of the mesh, and the least of the first rows and the greatest of the others."""
+    rows = _Loop("r", "rows", "row", "row.end")
     return f"""
 define internal void @reduce_mesh(ptr %table, i64 %rows) {{
 entry:
@@ -336,8 +366,7 @@ entry:
 {_slot("least", FrameSlot.LEAST)}
 {_slot("reduced", FrameSlot.REDUCED, "ptr")}
   br label %row
-row:
-  %r = phi i64 [ 0, %entry ], [ %r.next, %row.end ]
+{rows.head}
   %offset = mul i64 %r, %stride
   %row.at = getelementptr double, ptr %room, i64 %offset
   %is.least = icmp slt i64 %r, %least
@@ -352,9 +381,7 @@ row.end:
   %extreme = phi double [ %lowest, %low ], [ %highest, %high ]
   %to = getelementptr double, ptr %reduced, i64 %r
   store double %extreme, ptr %to, align 8
-  %r.next = add i64 %r, 1
-  %r.more = icmp slt i64 %r.next, %rows
-  br i1 %r.more, label %row, label %done
+{rows.end}
 done:
   ret void
 }}"""
@@ -362,6 +389,7 @@ done:
 
 def _conditions() -> str:
     """Whether every number of the nodes that has to keep a sign keeps it, by its least and greatest values."""
+    pairs = _Loop("c", "count", "condition", "condition.met", behind="hold")
     return f"""
 define internal i1 @conditions_hold(ptr %table) {{
 entry:
@@ -370,8 +398,7 @@ entry:
 {_slot("count", FrameSlot.CONDITIONS + 1)}
   %some = icmp sgt i64 %count, 0
   br i1 %some, label %condition, label %hold
-condition:
-  %c = phi i64 [ 0, %entry ], [ %c.next, %condition.met ]
+{pairs.head}
   %c.first = mul i64 %c, 2
   %c.second = add i64 %c.first, 1
   %first.at = getelementptr i64, ptr %pairs, i64 %c.first
@@ -392,9 +419,7 @@ negative:
   %below = fcmp olt double %b, 0.0
   br i1 %below, label %condition.met, label %broken
 condition.met:
-  %c.next = add i64 %c, 1
-  %c.more = icmp slt i64 %c.next, %count
-  br i1 %c.more, label %condition, label %hold
+{pairs.end}
 hold:
   ret i1 true
 broken:
@@ -404,6 +429,7 @@ broken:
 
 def _wind() -> str:
     """Compute the nodes that tell turns, and the centre of every link's angle; whether all are known."""
+    links = _Loop("l", "links", "link", "link.met", behind="known")
     return f"""
 define internal i1 @wind_links(ptr %table, i64 %links) {{
 entry:
@@ -417,8 +443,7 @@ entry:
 {_slot("wound", FrameSlot.WOUND, "ptr")}
 {_slot("centres", FrameSlot.CENTRES, "ptr")}
   br label %link
-link:
-  %l = phi i64 [ 0, %entry ], [ %l.next, %link.met ]
+{links.head}
   %raw.offset = mul i64 %l, %stride
   %raw = getelementptr double, ptr %room, i64 %raw.offset
   %wound.offset = mul i64 %l, %count
@@ -431,9 +456,7 @@ link:
   %is.known = fcmp ord double %found, %found
   br i1 %is.known, label %link.met, label %otherwise
 link.met:
-  %l.next = add i64 %l, 1
-  %l.more = icmp slt i64 %l.next, %links
-  br i1 %l.more, label %link, label %known
+{links.end}
 known:
   ret i1 true
 otherwise:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from centrode.views.rounding import without_rounding
+from centrode.views.columns import without_rounding
 
 
 def test_a_number_of_rounding_is_zero_beside_a_greater_one() -> None:
