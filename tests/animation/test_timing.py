@@ -59,14 +59,23 @@ def test_delays_do_not_drift(per_second: float) -> None:
         ({"fps": 0.0}, "give 0.1 to 50 frames per second"),
         ({"fps": 51.0}, "give 0.1 to 50 frames per second"),
         ({"fps": float("nan")}, "give 0.1 to 50 frames per second"),
-        ({"duration": 0.0}, "duration: it must be greater than zero"),
-        ({"duration": float("inf")}, "duration: it must be greater than zero"),
-        ({"speed": -1.0}, "speed: it must be greater than zero"),
+        (
+            {"duration": 0.0},
+            "duration: it must be a finite number greater than zero, and 0 is given; give seconds",
+        ),
+        ({"duration": float("inf")}, "greater than zero, and inf is given"),
+        (
+            {"speed": -1.0},
+            "speed: it must be a finite number greater than zero, and -1 is given; give a multiple",
+        ),
+        ({"speed": 0.0}, "greater than zero, and 0 is given"),
+        ({"speed": float("inf")}, "greater than zero, and inf is given; give a multiple"),
+        ({"speed": float("nan")}, "greater than zero, and nan is given"),
         ({"speed": 1.0, "duration": 1.0}, "remove one of the two"),
         ({"frames": 10, "fps": 10.0, "duration": 1.0}, "remove one of the three"),
         ({"frames": 100, "duration": 1.0}, "100 frames in 1 s are 100 per second"),
         ({"duration": 1e6}, "frames; give 2 to 3000 frames"),
-        ({"duration": 0.05}, "1 frames; give 2 to 3000 frames"),
+        ({"duration": 0.05}, "1 frame; give 2 to 3000 frames"),
     ],
 )
 def test_what_does_not_go_together_is_refused(asked: dict[str, Any], told: str) -> None:

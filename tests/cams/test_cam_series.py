@@ -100,7 +100,7 @@ def test_tables_have_all_digits_and_pages_the_papers_letters() -> None:
 
 
 def test_terms_out_of_bounds_are_refused() -> None:
-    with pytest.raises(ct.InputError, match="1 terms are given; give 2 to"):
+    with pytest.raises(ct.InputError, match="1 term is given; give 2 to"):
         ct.cam_series(PAPER, terms=1)
     with pytest.raises(ct.InputError, match=r"2\.5 terms are given"):
         ct.cam_series(PAPER, terms=2.5)  # type: ignore[arg-type]

@@ -147,7 +147,7 @@ def test_a_smooth_motion_is_called_so_and_one_below_zero_is_told(centrode: Centr
     [
         (("--terms", "30"), "--terms: this cam is given by its follower's lift and has no curvature law"),
         (("--groove",), "--groove: this cam is given by its follower's lift"),
-        (("--samples", "1"), "1 samples are given"),
+        (("--samples", "1"), "1 sample is given"),
     ],
 )
 def test_options_that_mean_nothing_are_refused(

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
+import pytest
+
 Centrode = Callable[..., Any]
 
 
@@ -83,3 +85,21 @@ def test_what_cannot_be_exported_is_told(centrode: Centrode) -> None:
     ):
         done = centrode(*words)
         assert (done.code, told in done.err) == (2, True), done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("--c", "--python"), "--c and --python"),
+        (("--format", "fmu", "--matlab"), "--format fmu and --matlab"),
+        (("--format", "urdf", "--format", "sdf"), "--format urdf and --format sdf"),
+    ],
+)
+def test_one_format_is_written_at_a_time(centrode: Centrode, words: tuple[str, ...], named: str) -> None:
+    """In whatever order they stand; the same format said twice is one."""
+    for order in (words, words[::-1] if "--format" not in words else words):
+        done = centrode("export", "crank-rocker", *order)
+        assert (done.code, done.out) == (2, "")
+        assert f"--format: {named} are given together" in done.err
+    twice = centrode("export", "crank-rocker", "--c", "--format", "c")
+    assert (twice.code, twice.out) == (0, centrode("export", "crank-rocker", "--c").out)

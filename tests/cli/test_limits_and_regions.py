@@ -115,8 +115,8 @@ REFUSED = {
     ("limits", "arm.toml", "--drive", "OA", "--out", "limits.pdf"): 'cannot be written as ".pdf"',
     ("region", "arm.toml", "--range", "OA=1"): "expected NAME=FIRST:LAST",
     ("region", "arm.toml", "--range", "XY=0:1"): "XY is not one of the two drives",
-    ("region", "arm.toml", "--drive", "OA"): "a region needs two different drives; 1 are given",
-    ("region", "arm.toml", "--samples", "1"): "1 samples are given",
+    ("region", "arm.toml", "--drive", "OA"): "a region needs two different drives; 1 is given",
+    ("region", "arm.toml", "--samples", "1"): "1 sample is given",
     ("region", "crank-rocker"): "a region needs two drives, the mechanism has one",
     ("region", "excavator-arm"): "3 are given; name two of: K-A, C-E, S-N",
 }

@@ -39,7 +39,7 @@ def test_what_cannot_be_put_on_sheets_is_told(centrode: Centrode, tmp_path: Path
         (("crank-rocker", "--scale", "1:0"), "is not a scale"),
         (("crank-rocker", "--format", "dwg"), "use one of pdf, dxf"),
         (("crank-rocker", "--link", "Z"), "neither a link nor a guide"),
-        (("crank-rocker", "--positions", "1"), "1 positions are given"),
+        (("crank-rocker", "--positions", "1"), "1 position is given"),
         (("crank-rocker", "--at", "1 kg"), "--at"),
         (
             ("spherical-crank-rocker", "--link", "BC"),

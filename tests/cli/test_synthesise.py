@@ -61,7 +61,7 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0]]',
             2,
-            "1 rows are too few",
+            "1 row is too few",
         ),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0], [1, nan], [2, 2]]',

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from centrode import locale
@@ -101,6 +102,22 @@ def test_plural_forms(language: str, words: dict[int, str]) -> None:
     for count, word in words.items():
         sentence = locale.ngettext("{count} mechanism", "{count} mechanisms", count).format(count=count)
         assert sentence == f"{count} {word}"
+
+
+@pytest.mark.parametrize(
+    ("language", "sentences"),
+    [
+        ("en", ("1 sample is given", "0 samples are given", "2.5 samples are given")),
+        ("ru", ("задан 1 отсчёт", "задано 0 отсчётов", "задано 2.5 отсчётов")),
+        ("uk", ("задано 1 відлік", "задано 0 відліків", "задано 2.5 відліків")),
+    ],
+)
+def test_numbers_of_all_kinds_have_a_grammatical_number(language: str, sentences: tuple[str, ...]) -> None:
+    """Whole numbers of numpy count as those of Python; what is not whole, somebody's slip, takes the plural."""
+    locale.choose_language(language)
+    for number, sentence in zip((np.int64(1), 0, 2.5), sentences, strict=True):
+        words = locale.ngettext("{n} sample is given", "{n} samples are given", number)
+        assert words.format(n=number) == sentence
 
 
 def test_empty_text_is_not_the_header() -> None:

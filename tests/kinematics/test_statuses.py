@@ -166,3 +166,13 @@ def test_ranges_too_far_away(start: float, stop: float) -> None:
 def test_impossible_numbers_of_samples(samples: int) -> None:
     with pytest.raises(ct.InputError, match="samples are given; give 1 to 1000000"):
         ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), samples)
+
+
+def test_an_empty_range_is_refused() -> None:
+    """Many samples of one position are a slip; one sample of it is what somebody may want."""
+    turning = four_bar(1.0, 3.5, 3.0, 4.0)
+    by_law = four_bar(1.0, 3.5, 3.0, 4.0, drives=[{"link": "OA", "law": "t"}])
+    for mechanism, unit in ((turning, "rad"), (by_law, "s")):
+        with pytest.raises(ct.InputError, match=f"the range is empty: it begins and ends at 1 {unit}; give"):
+            ct.motion(mechanism, 5, start=1.0, stop=1.0)
+        assert ct.motion(mechanism, 1, start=1.0, stop=1.0).sizes["sample"] == 1

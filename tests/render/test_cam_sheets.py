@@ -484,7 +484,7 @@ def test_what_no_sheet_shows_is_refused() -> None:
         ("walking-wheel-three-legs", {"link": "A"}, "motion of its follower"),
         ("valve-cam", {"instants": ["30 deg"]}, "no plans of vectors"),
         ("valve-cam", {"link": "A"}, "motion of its follower"),
-        ("valve-cam", {"positions": 1}, "1 positions are given"),
+        ("valve-cam", {"positions": 1}, "1 position is given"),
     ):
         with pytest.raises(ct.InputError, match=told):
             drawing_sheets(ct.example(cam), **arguments)

@@ -187,8 +187,8 @@ ONES = np.ones(SAMPLES)
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"tables": {"t": ONES[1:]}}, r"tables t: it has 36 values, the motion has 37 samples"),
-        ({"tables": {"t": [[1.0]]}}, "it has 1 x 1 values"),
+        ({"tables": {"t": ONES[1:]}}, r"tables t: values: 36, and the motion has 37 samples"),
+        ({"tables": {"t": [[1.0]]}}, "values: 1 x 1, and the motion has"),
         ({"tables": {"t": ["a"] * SAMPLES}}, "its values are not numbers"),
         ({"tables": {"t": ONES * np.inf}}, "sample 0 is infinite"),
         ({"tables": {"t": ONES * np.nan}}, "no value at any sample"),
@@ -203,7 +203,7 @@ ONES = np.ones(SAMPLES)
         ({"tables": {"error": ONES, "t": ONES}}, "cannot be the name of a result"),
         ({"tables": {"t": ONES}, "reduce": {"a": "max(time)"}}, "outputs are formulas already"),
         ({"tables": {"t": ONES}, "out": np.empty(5)}, "nothing is kept of every sample"),
-        ({"outputs": ["position.B"], "out": np.empty(5)}, "room for 5 numbers, 222 are needed"),
+        ({"outputs": ["position.B"], "out": np.empty(5)}, "room for 5 numbers; needed: 222"),
         ({"outputs": ["position.B"], "out": [1.0]}, "contiguous"),
         ({"outputs": {"e": 5}}, "a formula is a text"),
         ({"compute": "flywheel"}, "formulas belong to sweeps of motions"),
@@ -223,7 +223,7 @@ def test_what_is_refused(change: dict[str, Any], message: str) -> None:
     [
         ("", "the file is empty"),
         ("t\nx\n", "row 2: .* is not a number"),
-        ("t,u\n1\n", "row 2: it has 1 cells, the headers are 2"),
+        ("t,u\n1\n", "row 2: it has 1 cell, the headers are 2"),
         ("t [parrot]\n1\n", "unknown unit"),
         ("t,t\n1,2\n", "is given twice"),
     ],

@@ -16,7 +16,7 @@ from centrode.kinematics.motion import motion
 from centrode.kinematics.plan_evaluation import layout_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.samples import MotionOnPath
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.search import interpolated_roots
@@ -125,7 +125,7 @@ def check_positions(positions: int) -> None:
     if isinstance(positions, bool) or not 2 <= positions <= MOST:
         raise InputError(
             "positions",
-            _("{count} positions are given").format(count=positions),
+            ngettext("{n} position is given", "{n} positions are given", positions).format(n=positions),
             _("give 2 to {most}").format(most=MOST),
         )
 

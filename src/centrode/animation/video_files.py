@@ -22,7 +22,7 @@ from PIL import Image
 from centrode.animation.stage import Palette, Pixels, Stage
 from centrode.errors import InputError
 from centrode.files.drafts import draft_file
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.optional_packages import how_to_install
 
 Said = Callable[[int, int], None]
@@ -218,9 +218,11 @@ def timing_of(
     rate = fps or PER_SECOND
     count = round(length * rate)
     if not 2 <= count <= MOST_FRAMES:
-        what = _("{length:.4g} s at {rate:g} frames per second are {count} frames").format(
-            length=length, rate=rate, count=count
-        )
+        what = ngettext(
+            "{length:.4g} s at a rate of {rate:g} per second are {n} frame",
+            "{length:.4g} s at a rate of {rate:g} per second are {n} frames",
+            count,
+        ).format(length=length, rate=rate, n=count)
         raise InputError("fps", what, _("give 2 to {most} frames").format(most=MOST_FRAMES))
     return Timing(count, rate)
 
@@ -237,14 +239,19 @@ def check_timing(
         what = _("the number of frames, the frames per second and the duration are given together")
         raise InputError("fps", what, _("remove one of the three"))
     if frames is not None and (isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES):
-        what = _("{count} frames are given").format(count=frames)
+        what = ngettext("{n} frame is given", "{n} frames are given", frames).format(n=frames)
         raise InputError("frames", what, _("give 2 to {most} frames").format(most=MOST_FRAMES))
     if fps is not None and not LEAST_RATE <= fps <= FASTEST[kind]:
         what = _("{rate:g} frames per second are given").format(rate=fps)
         raise InputError("fps", what, _rates(kind))
+    units = {
+        "duration": _("give seconds, as 3"),
+        "speed": _("give a multiple of the mechanism's own speed, as 0.5"),
+    }
     for name, value in (("duration", duration), ("speed", speed)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
-            raise InputError(name, _("it must be greater than zero"))
+            what = _("it must be a finite number greater than zero, and {value:g} is given")
+            raise InputError(name, what.format(value=value), units[name])
 
 
 def _rates(kind: str) -> str:

@@ -292,9 +292,11 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
     for number, cells in lines[1:]:
         if len(cells) != len(headers):
             place = _("{table}, row {number}").format(table=where, number=number)
-            what = _("it has {count} cells, the headers are {wanted}").format(
-                count=len(cells), wanted=len(headers)
-            )
+            what = ngettext(
+                "it has {n} cell, the headers are {wanted}",
+                "it has {n} cells, the headers are {wanted}",
+                len(cells),
+            ).format(n=len(cells), wanted=len(headers))
             raise InputError(place, what, _separators(separator))
         points = [cell if separator == "," else cell.replace(",", ".") for cell in cells]
         rows.append(

@@ -41,7 +41,7 @@ from centrode.cams.roller_path import (
     system_series,
 )
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.cam import MOST_TERMS
 from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.numerics.jets import Jet, square_root
@@ -171,7 +171,7 @@ def series_path(
     check_span(law, start, stop)
     given: object = terms  # whoever calls without types may give anything
     if isinstance(given, bool) or not isinstance(given, Integral) or not 2 <= terms <= MOST_TERMS:
-        what = _("{terms} terms are given").format(terms=terms)
+        what = ngettext("{n} term is given", "{n} terms are given", terms).format(n=terms)
         raise InputError("terms", what, _("give 2 to {most}").format(most=MOST_TERMS))
     # a few more terms than asked for: they measure what the polynomial leaves out
     every, cosines = (np.asarray(c) for c in coefficients(law, rho0, gamma0, terms + FOLLOWING))

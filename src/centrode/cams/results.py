@@ -23,7 +23,7 @@ from centrode.cams.walking_wheel import Shoe, WheelMover, WheelRolling, mover, r
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
 from centrode.kinematics.sample_index import selectable
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model import reading
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam, cam_text, require_curvature_cam
@@ -248,7 +248,7 @@ def count_of(cam: Cam, samples: int | None) -> int:
     if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
         raise InputError(
             _("samples"),
-            _("{samples} samples are given").format(samples=count),
+            ngettext("{n} sample is given", "{n} samples are given", count).format(n=count),
             _("give {least} to {most}").format(least=2, most=reading.SAMPLES),
         )
     return count

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from centrode.cams.curvature_laws import CurvatureLaw, derivatives
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model import reading
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
@@ -442,7 +442,7 @@ def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None 
         asked = samples if samples is not None else cam.study.samples
         count = DEFAULT_SAMPLES if asked is None else asked
         if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
-            what = _("{samples} samples are given").format(samples=count)
+            what = ngettext("{n} sample is given", "{n} samples are given", count).format(n=count)
             raise InputError(_("samples"), what, _("give 2 to {most}").format(most=reading.SAMPLES))
         return np.linspace(*ends_of(cam), count)
     angle = replace(ANGLE, refuses_bare=cam.display.refuses_bare_angles)

@@ -19,7 +19,7 @@ from centrode.cams.return_arc import Arc, ClosedPath
 from centrode.cams.roller_path import JETS, Array, Frames, SymmetricPath, frames, radius_jet
 from centrode.dynamics.steady_motion.cycle import NODES, Panels, PanelSeries
 from centrode.errors import InputError, MotionError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.numerics.jets import Jet, quotient
 from centrode.numerics.search import Extremes, extremes, maxima_between
 from centrode.printed_results import PrintsSummary
@@ -377,7 +377,7 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> WheelMov
     if isinstance(legs, bool) or not LEAST_LEGS <= legs <= MOST_LEGS:
         raise InputError(
             "[mover] legs",
-            _("{legs} legs are given").format(legs=legs),
+            ngettext("{n} leg is given", "{n} legs are given", legs).format(n=legs),
             _("give {least} to {most}").format(least=LEAST_LEGS, most=MOST_LEGS),
         )
     if not (math.isfinite(post) and post > roller):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from centrode.chains.kinematic_chains import GREATEST, Joint, KinematicChain, chains
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.structure.assur import Contours, roman
 
 
@@ -81,7 +81,9 @@ def assur_groups(links: int) -> tuple[AssurScheme, ...]:
     [('IV', 2), ('III', 3)]
     """
     if links < 2 or links % 2:
-        what = _("there is no Assur group of {links} links").format(links=links)
+        what = ngettext(
+            "there is no Assur group of {n} link", "there is no Assur group of {n} links", links
+        ).format(n=links)
         raise InputError("links", what, _("a group has an even number of links"))
     if links + 1 > GREATEST:
         what = _("groups of 2 to {most} links are found, {links} are wished").format(

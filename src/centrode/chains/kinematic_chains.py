@@ -22,7 +22,7 @@ from centrode.chains.contracted_graphs import (
     graphs_of_loops,
 )
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 
 Joint: TypeAlias = tuple[int, int]
 
@@ -225,7 +225,11 @@ def _check_links(links: int, mobility: int) -> None:
     if not 3 <= links <= GREATEST:
         raise InputError(
             "links",
-            _("chains of 3 to {most} links are found, {links} are wished").format(most=GREATEST, links=links),
+            ngettext(
+                "chains of 3 to {most} links are found, {n} is wished",
+                "chains of 3 to {most} links are found, {n} are wished",
+                links,
+            ).format(most=GREATEST, n=links),
         )
     if (links - 1 - mobility) % 2 or links < 3 + mobility:
         possible = ", ".join(str(number) for number in range(3 + mobility, GREATEST + 1, 2))

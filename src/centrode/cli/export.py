@@ -27,9 +27,9 @@ KINDS = ("mjcf", *ROBOTS, "fmu", "freecad", *LANGUAGES)
 @mechanism_argument
 @click.option(
     "--format",
-    "kind",
+    "formats",
     type=click.Choice(KINDS),
-    default="mjcf",
+    multiple=True,
     help=mark(
         "mjcf (default): a model for MuJoCo, its loops closed by constraints. urdf, sdf: models for ROS and Gazebo, "
         "with a file FILE.loops.json beside FILE. fmu: co-simulation and model exchange (FMI 3.0), for Simulink and "
@@ -37,12 +37,10 @@ KINDS = ("mjcf", *ROBOTS, "fmu", "freecad", *LANGUAGES)
         "computes the motion from the drive and from dimensions."
     ),
 )
-@click.option("--c", "kind", flag_value="c", help=mark("The same as --format c."))
-@click.option("--python", "kind", flag_value="python", help=mark("The same as --format python."))
-@click.option(
-    "--matlab", "kind", flag_value="matlab", help=mark("The same as --format matlab; for Octave too.")
-)
-@click.option("--javascript", "kind", flag_value="javascript", help=mark("The same as --format javascript."))
+@click.option("--c", is_flag=True, help=mark("The same as --format c."))
+@click.option("--python", is_flag=True, help=mark("The same as --format python."))
+@click.option("--matlab", is_flag=True, help=mark("The same as --format matlab; for Octave too."))
+@click.option("--javascript", is_flag=True, help=mark("The same as --format javascript."))
 @click.option(
     "--vary",
     multiple=True,
@@ -88,7 +86,7 @@ KINDS = ("mjcf", *ROBOTS, "fmu", "freecad", *LANGUAGES)
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def export(
     mechanism: str,
-    kind: str,
+    formats: tuple[str, ...],
     vary: tuple[str, ...],
     free: bool,
     driven: bool,
@@ -98,8 +96,10 @@ def export(
     stop: str | None,
     out: Path | None,
     force: bool,
+    **languages: bool,
 ) -> None:
     """Print or write the mechanism as another program reads it."""
+    kind = _kind(formats, languages)
     beside: dict[Path, str] = {}
     if free and kind != "mjcf":
         raise InputError("--free", _("only a model for MuJoCo is left to its loads"), _("add --format mjcf"))
@@ -140,6 +140,19 @@ def export(
             draft = drafts.enter_context(output.output_file(path, force=force))
             draft.write_text(content, encoding="utf-8", newline="\n")
     click.echo(output.wrote(list(files)))
+
+
+def _kind(formats: tuple[str, ...], languages: Mapping[str, bool]) -> str:
+    """The one format that is asked for; InputError where several are, as one file is written."""
+    # in the order of the help, as click does not tell that of the command line
+    named = {f"--format {kind}": kind for kind in formats}
+    named |= {f"--{kind}": kind for kind in LANGUAGES if languages[kind]}
+    kinds = list(dict.fromkeys(named.values()))
+    if len(kinds) > 1:
+        first, second = (next(option for option, kind in named.items() if kind == one) for one in kinds[:2])
+        what = _("{one} and {other} are given together").format(one=first, other=second)
+        raise InputError("--format", what, _("one format is written at a time: keep one of them"))
+    return kinds[0] if kinds else "mjcf"
 
 
 def _source_file(

@@ -19,7 +19,7 @@ from centrode.cli.arguments import asked_cluster, no_figures_option, scheduler_o
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import ClusterWarning, DamageWarning, InputError, MotionError
-from centrode.locale import _, mark
+from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -166,7 +166,12 @@ def _as_store(asked: SweepStudy, study: str, target: str, how: How) -> xr.Datase
         raise
     found = data.attrs["mechanisms_found"]
     if found:
-        output.tell(_("{found} mechanisms were computed in an earlier run").format(found=found))
+        told = ngettext(
+            "{n} mechanism was computed in an earlier run",
+            "{n} mechanisms were computed in an earlier run",
+            found,
+        )
+        output.tell(told.format(n=found))
     return data
 
 

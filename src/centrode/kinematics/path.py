@@ -17,7 +17,7 @@ import numpy.typing as npt
 from centrode.errors import InputError
 from centrode.kinematics.law_jumps import Jump, first_jump
 from centrode.laws import Law, ShaftLaw
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model import reading
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.motion_parameter import MotionParameter, MotionVariable
@@ -441,14 +441,16 @@ def even_grid(
     if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
         raise InputError(
             _("samples"),
-            _("{samples} samples are given").format(samples=samples),
+            ngettext("{n} sample is given", "{n} samples are given", samples).format(n=samples),
             _("give 1 to {most}").format(most=reading.SAMPLES),
         )
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
             raise InputError(name, _("the range must be finite"))
     if path.parameter.is_uniform:
-        span = _at_values(path, np.linspace(*_range(path, start, stop, reach, reachable), samples))
+        ends = _range(path, start, stop, reach, reachable)
+        _check_range(path, ends, samples, given=not (start is None and stop is None))
+        span = _at_values(path, np.linspace(*ends, samples))
     elif reachable and None in (start, stop):
         raise InputError(
             "[study] range",
@@ -596,7 +598,18 @@ def _even_times(path: Path, samples: int, start: float | None, stop: float | Non
     last = stop if stop is not None else min((span[1] for span in spans), default=None)
     if last is None:
         last = _one_turn(path)
+    _check_range(path, (first, last), samples, given=not (start is None and stop is None))
     return _at_times(path, np.linspace(first, last, samples))
+
+
+def _check_range(path: Path, ends: tuple[float, float], samples: int, given: bool) -> None:
+    """Refuse many samples of one instant: a slip in a range that somebody gave, whose tables would repeat a row."""
+    if given and samples > 1 and ends[0] == ends[1]:
+        unit = path.parameter.instant.unit
+        what = _("the range is empty: it begins and ends at {value:.9g} {unit}").format(
+            value=ends[0], unit=unit
+        )
+        raise InputError(_("range"), what, _("give different ends; for one position one sample is enough"))
 
 
 def _at_times(path: Path, time: Array) -> SampleGrid:

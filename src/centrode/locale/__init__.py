@@ -8,13 +8,17 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
+from operator import index
 from pathlib import Path
+from typing import SupportsIndex
 
 from centrode.errors import InputError
 
 DOMAIN = "centrode"
 LANGUAGES = ("en", "ru", "uk")
 DIRECTORY = Path(__file__).parent
+MANY = 5
+"""A number that takes the form of many in every language spoken."""
 
 _catalogue: gettext.NullTranslations = gettext.NullTranslations()
 
@@ -36,9 +40,14 @@ def speaking(language: str) -> Iterator[None]:
         _catalogue = before
 
 
-def ngettext(singular: str, plural: str, number: int) -> str:
-    """The sentence in the grammatical number that `number` asks for in the chosen language."""
-    return _catalogue.ngettext(singular, plural, number)
+def ngettext(singular: str, plural: str, number: object) -> str:
+    """The sentence in the grammatical number that `number` asks for in the chosen language.
+
+    What is no whole number, as somebody may give it in Python, takes the plural.
+    """
+    # whole numbers of numpy are none of Python's, and gettext takes only these
+    whole = index(number) if isinstance(number, SupportsIndex) else MANY
+    return _catalogue.ngettext(singular, plural, whole)
 
 
 def chosen_language() -> str:

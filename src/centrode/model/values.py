@@ -15,7 +15,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, PlainValidator
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model import reading
 from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
 from centrode.model.reading import (
@@ -358,10 +358,18 @@ def _table_row(
 ) -> tuple[float, ...]:
     if len(row) != len(kinds):
         if kinds[0] == "time":
-            what = _("row {number} of {name} has {count} values, expected a time and a value")
+            what = ngettext(
+                "row {number} of {name} has {n} value, expected a time and a value",
+                "row {number} of {name} has {n} values, expected a time and a value",
+                len(row),
+            )
         else:
-            what = _("row {number} of {name} has {count} values, expected {expected}")
-        text = what.format(number=number, name=value_text(name), count=len(row), expected=len(kinds))
+            what = ngettext(
+                "row {number} of {name} has {n} value, expected {expected}",
+                "row {number} of {name} has {n} values, expected {expected}",
+                len(row),
+            )
+        text = what.format(number=number, name=value_text(name), n=len(row), expected=len(kinds))
         raise Problem(text)
     try:
         return tuple(_cell(*given) for given in zip(row, kinds, factors, strict=True))

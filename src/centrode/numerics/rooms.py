@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -107,9 +107,11 @@ def check_room(out: object, numbers: int) -> None:
         what = _("an array of float64 that is contiguous and can be written to is required")
         raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
     if out.size < numbers:
-        what = _("it has room for {size} numbers, {numbers} are needed").format(
-            size=out.size, numbers=numbers
-        )
+        what = ngettext(
+            "it has room for {n} number; needed: {numbers}",
+            "it has room for {n} numbers; needed: {numbers}",
+            out.size,
+        ).format(n=out.size, numbers=numbers)
         raise InputError("out", what, _("make it by numpy.empty({numbers})").format(numbers=numbers))
 
 

@@ -13,7 +13,7 @@ from functools import partial
 from itertools import combinations, pairwise
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.reading import Problem, read_name
 from centrode.sketches.parts import (
     FRAME,
@@ -118,8 +118,12 @@ class _Reader:
                 drawn.add(frozenset(stroke.points))
                 self._add_bodies(stroke, blocks)
         if self.forks:
-            text = _("lines that go straight on through a hinge are two links ({count} times)")
-            self.sketch.notes.append(text.format(count=len(self.forks)))
+            text = ngettext(
+                "lines that go straight on through a hinge are two links ({n} time)",
+                "lines that go straight on through a hinge are two links ({n} times)",
+                len(self.forks),
+            )
+            self.sketch.notes.append(text.format(n=len(self.forks)))
         self._attach_inner_nodes(blocks)
         if self._has_rings:
             self._weld()
@@ -129,8 +133,12 @@ class _Reader:
         self.parts.names = self._names()
         united = self.parts.unite_rigid(self.where)
         if united:
-            text = _("lines that hold each other rigidly are one part ({count} times)")
-            self.sketch.notes.append(text.format(count=united))
+            text = ngettext(
+                "lines that hold each other rigidly are one part ({n} time)",
+                "lines that hold each other rigidly are one part ({n} times)",
+                united,
+            )
+            self.sketch.notes.append(text.format(n=united))
         loose = self.parts.leave_out_loose()
         if loose:
             self.sketch.leave_out(_("lines that do not hang together with the frame"), loose)
@@ -398,7 +406,11 @@ class _Reader:
             welded += 1
         if welded:
             self.sketch.notes.append(
-                _("lines that meet without a circle are one link ({count} times)").format(count=welded)
+                ngettext(
+                    "lines that meet without a circle are one link ({n} time)",
+                    "lines that meet without a circle are one link ({n} times)",
+                    welded,
+                ).format(n=welded)
             )
 
     # The frame.

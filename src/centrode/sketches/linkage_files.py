@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.reading import Problem, read_name
 from centrode.sketches.parts import FRAME, Body, DrawingParts, Guided, less, unit
 from centrode.sketches.sketch import LARGEST, Place, Sketch
@@ -244,8 +244,12 @@ class _LinkageReader:
             self.parts.remove(body)
         united = self.parts.unite_rigid(self.where)
         if united:
-            text = _("lines that hold each other rigidly are one part ({count} times)")
-            self.sketch.notes.append(text.format(count=united))
+            text = ngettext(
+                "lines that hold each other rigidly are one part ({n} time)",
+                "lines that hold each other rigidly are one part ({n} times)",
+                united,
+            )
+            self.sketch.notes.append(text.format(n=united))
         # a link of one connector holds nothing
         for body in [one for one in self.parts.bodies[1:] if len(one.nodes) < 2]:
             self.parts.remove(body)

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.reading import csv_separator, read_file, value_text
 from centrode.model.units import KINDS, unit_factor
 from centrode.numerics.operations import CONSTANTS, FUNCTIONS
@@ -101,9 +101,11 @@ def _table(where: str, given: Any, samples: int) -> SampleTable:
         ) from None
     if values.shape != (samples,):
         count = " x ".join(map(str, values.shape)) or "1"
-        what = _("it has {count} values, the motion has {samples} samples").format(
-            count=count, samples=samples
-        )
+        what = ngettext(
+            "values: {count}, and the motion has {n} sample",
+            "values: {count}, and the motion has {n} samples",
+            samples,
+        ).format(count=count, n=samples)
         raise InputError(where, what, _("give one value for each sample, NaN where there is none"))
     if np.isinf(values).any():
         what = _("the value of sample {number} is infinite").format(number=int(np.isinf(values).argmax()))
@@ -152,9 +154,11 @@ def read_columns(path: str | Path) -> dict[str, list[float]]:
     for number, cells in rows[1:]:
         place = _("{table}, row {number}").format(table=path.name, number=number)
         if len(cells) != len(headings):
-            what = _("it has {count} cells, the headers are {wanted}").format(
-                count=len(cells), wanted=len(headings)
-            )
+            what = ngettext(
+                "it has {n} cell, the headers are {wanted}",
+                "it has {n} cells, the headers are {wanted}",
+                len(cells),
+            ).format(n=len(cells), wanted=len(headings))
             raise InputError(place, what, _("give every column a value"))
         for (name, factor), cell in zip(headings, cells, strict=True):
             columns[name].append(

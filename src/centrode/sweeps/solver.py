@@ -22,7 +22,7 @@ from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.plan_evaluation import RadicandZero, layout_of
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, check_size, grid_of, solve
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text, parse_mechanism, value_at, with_values
 from centrode.model.mechanism import Mechanism
@@ -340,7 +340,11 @@ class Solver:
                     raise InputError("values", what, nearest(str(path), self.free))
             values = [values.get(path, own) for path, own in zip(self.free, self.own, strict=True)]
         if not isinstance(values, Sequence) or isinstance(values, str) or len(values) != len(self.free):
-            what = _("{count} values are required, one for each free path").format(count=len(self.free))
+            what = ngettext(
+                "{n} value is required, one for each free path",
+                "{n} values are required, one for each free path",
+                len(self.free),
+            ).format(n=len(self.free))
             raise InputError("values", what, _("give them in the order of free"))
         return tuple([x if type(x) is float else self._number(k, x) for k, x in enumerate(values)])
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from centrode.errors import MotionError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.synthesis.answers import Answer, SynthesisResults, four_bar_answer
 from centrode.synthesis.burmester import (
     Dyads,
@@ -67,9 +67,13 @@ def pose_answers(
     progress(0.3)
     answers = _choose_answers(task, poses, dyads, pairs, progress, stop)
     if not answers:
-        what = _("{count} linkages lead through the poses, but none keeps everything that is required")
+        what = ngettext(
+            "{n} linkage leads through the poses, but does not keep everything that is required",
+            "{n} linkages lead through the poses, but none keeps everything that is required",
+            len(pairs),
+        )
         repair = _("loosen a constraint, or change a pose")
-        raise MotionError("[synthesis]", what.format(count=len(pairs)), repair)
+        raise MotionError("[synthesis]", what.format(n=len(pairs)), repair)
     return SynthesisResults(
         task, tuple(answers), poses.places, examined=len(pairs), complete=not stop(), curves=curves
     )

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 from pydantic import AfterValidator, BeforeValidator, PlainValidator, model_validator
 
 from centrode.errors import InputError
-from centrode.locale import _, mark
+from centrode.locale import _, mark, ngettext
 from centrode.model.description_files import DescriptionFiles
 from centrode.model.files import mechanism_from
 from centrode.model.mechanism import Mechanism
@@ -364,8 +364,12 @@ def _check_keys(wanted: Synthesis) -> None:
         and isinstance(wanted.targets, list | tuple)
         and len(wanted.targets) != wanted.exact
     ):
-        what = _("{exact} exact points, and a table of {count}")
-        what = what.format(exact=wanted.exact, count=len(wanted.targets))
+        what = ngettext(
+            "{n} exact point, and a table of {count}",
+            "{n} exact points, and a table of {count}",
+            wanted.exact,
+        )
+        what = what.format(n=wanted.exact, count=len(wanted.targets))
         raise Problem(what, _("a table of three to five rows is met exactly: remove exact"), ("exact",))
     if wanted.trade_off is not None and wanted.topology not in FOUR_BARS:
         what = _("a trade-off is found of four-bar linkages in the plane")
@@ -408,8 +412,12 @@ def _check_targets(kind: str, rows: Rows) -> None:
     at = ("targets",)
     least = FEWEST[kind]
     if len(rows) < least:
-        what = _("{count} rows are too few: at least {least} are needed")
-        raise Problem(what.format(count=len(rows), least=least), "", at)
+        what = ngettext(
+            "{n} row is too few: at least {least} are needed",
+            "{n} rows are too few: at least {least} are needed",
+            len(rows),
+        )
+        raise Problem(what.format(n=len(rows), least=least), "", at)
     if len(rows) > MOST_TARGETS:
         what = _("{count} rows are too many: at most {most} are taken")
         raise Problem(what.format(count=len(rows), most=MOST_TARGETS), _("thin them out"), at)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.kinematics.motion import motion
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
@@ -553,9 +553,13 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
         if len(answers) == wanted.answers:
             break
     if not answers:
-        what = _("{count} linkages lead through the poses, but none keeps everything that is required")
+        what = ngettext(
+            "{n} linkage leads through the poses, but does not keep everything that is required",
+            "{n} linkages lead through the poses, but none keeps everything that is required",
+            len(pairs),
+        )
         repair = _("loosen a constraint, or change a pose")
-        raise MotionError("[synthesis]", what.format(count=len(pairs)), repair)
+        raise MotionError("[synthesis]", what.format(n=len(pairs)), repair)
     return SynthesisResults(
         task, tuple(answers), _map(poses.places), examined=len(pairs), complete=not stop()
     )

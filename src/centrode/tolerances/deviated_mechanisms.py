@@ -13,7 +13,7 @@ import numpy.typing as npt
 from centrode.errors import InputError, Status
 from centrode.kinematics.plan_evaluation import RadicandZero
 from centrode.kinematics.preparation import Ready
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.reading import value_text
 from centrode.sweeps.outputs import Output, identifier
 from centrode.sweeps.solver import Solver
@@ -67,8 +67,9 @@ class DeviatedMechanisms:
                 raise InputError(f"outputs {name}", what, _('write a formula: "range(slide_H)"'))
         for name, column in zip(self.texts, self.solver.columns, strict=True):
             if isinstance(column.what, Output) and column.what.shape:
-                what = _("{name} has {count} numbers").format(
-                    name=value_text(column.what.name), count=int(np.prod(column.what.shape))
+                size = int(np.prod(column.what.shape))
+                what = ngettext("{name} has {n} number", "{name} has {n} numbers", size).format(
+                    name=value_text(column.what.name), n=size
                 )
                 raise InputError(f"outputs {name}", what, _('name one of them, as "position.B.x"'))
 

@@ -25,7 +25,7 @@ from centrode.sheets.sheet import (
     Section,
     Table,
 )
-from centrode.sheets.texts import NOTHING, Expression, Leaf, Number, Sentence, Text
+from centrode.sheets.texts import NOTHING, Counted, Expression, Leaf, Number, Sentence, Text
 from centrode.views.closed_train_chapters import closed_sections, shaft_facts
 
 if TYPE_CHECKING:
@@ -230,9 +230,10 @@ def _neighbours(train: PlanetaryTrain) -> Iterator[Block]:
         "neighbourhood",
     )
     yield Paragraph(
-        Sentence(
-            "The first number is the greater one. At most {most} planets fit.",
-            most=_teeth(train.most_planets),
+        Counted(
+            "The first number is the greater one. At most {n} planet fits.",
+            "The first number is the greater one. At most {n} planets fit.",
+            train.most_planets,
         )
     )
 

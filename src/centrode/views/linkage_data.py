@@ -11,7 +11,7 @@ import numpy as np
 from centrode.model.mechanism import FRAME, Placed
 from centrode.model.values import TurnsPerMinute
 from centrode.sheets.sheet import Block, Chapter, Column, Paragraph, Section, Table
-from centrode.sheets.texts import NOTHING, Expression, Joined, Name, Number, Place, Sentence, Text
+from centrode.sheets.texts import NOTHING, Counted, Expression, Joined, Name, Number, Place, Sentence, Text
 from centrode.views.follower_data import driving_cam
 
 if TYPE_CHECKING:
@@ -277,7 +277,7 @@ def _law(drive: Drive, speed_unit: str) -> Text:
         return Sentence("table of {count} rows", count=Number(len(drive.table), digits="d"))
     if drive.segments is None:
         return Sentence("by a cam")
-    return Sentence("{count} segments of motion", count=Number(len(drive.segments), digits="d"))
+    return Counted("{n} segment of motion", "{n} segments of motion", len(drive.segments))
 
 
 def _given(drive: Drive) -> Text:

@@ -280,10 +280,11 @@ def _friction(reactions: xarray.Dataset) -> Iterator[Fact]:
             "{contacts}: no motion there, friction is set to {zero}", contacts=contacts, zero=Number(0)
         )
         yield Fact(Sentence("no friction"), standing)
-    solved = Sentence(
+    solved = Counted(
+        "residual {share} after at most {n} step",
         "residual {share} after at most {n} steps",
+        int(reactions.attrs["friction_iterations"]),
         share=Number(reactions.attrs["friction_residual"], digits=".1e"),
-        n=Number(int(reactions.attrs["friction_iterations"])),
     )
     yield Fact(Sentence("friction against reactions"), solved)
 

@@ -25,7 +25,7 @@ from centrode.dynamics.equilibria.linear_equations import LinearEquations, Loade
 from centrode.dynamics.forward_dynamics.contacts import StopPush, stop_coordinate
 from centrode.dynamics.loads import Situation
 from centrode.errors import InputError, MotionError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 
@@ -109,14 +109,20 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
 
 def no_equilibrium(loaded: LoadedMechanism, count: int) -> MotionError:
     """The error of a mechanism that stays nowhere, from so many positions."""
-    what = _("no equilibrium is found from {count} positions")
+    what = ngettext(
+        "no equilibrium is found from {n} position", "no equilibrium is found from {n} positions", count
+    )
     repair = _("let springs, weights or friction hold it, or hold a drive (hold: DRIVE=VALUE)")
     if loaded.states:
-        what = _("no equilibrium is found from {count} positions in which the states of controllers rest too")
+        what = ngettext(
+            "no equilibrium is found from {n} position in which the states of controllers rest too",
+            "no equilibrium is found from {n} positions in which the states of controllers rest too",
+            count,
+        )
         repair = _(
             "let the controllers reach their targets: see most, and what is between the drive and its target"
         )
-    return MotionError("", what.format(count=count), repair)
+    return MotionError("", what.format(n=count), repair)
 
 
 def walked_positions(loaded: LoadedMechanism) -> Array:

@@ -34,7 +34,7 @@ from centrode.dynamics.equilibria.small_motions import SmallMotions, small_motio
 from centrode.dynamics.equilibria.steady_rotation import steady_rotation
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.motion import vocabulary_variable
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
@@ -136,14 +136,20 @@ def _place(loaded: LoadedMechanism, equilibrium: int | None) -> Array:
     if equilibrium is not None:
         places = stable_first(find_equilibria(loaded)).places
         if not 1 <= equilibrium <= len(places):
-            what = _("there are {count} equilibria, and number {number} is requested")
+            what = ngettext(
+                "there is {n} equilibrium, and number {number} is requested",
+                "there are {n} equilibria, and number {number} is requested",
+                len(places),
+            )
             if loaded.mechanism.stops:
-                what = _(
-                    "there are {count} equilibria that rest on no stop, and number {number} is requested"
+                what = ngettext(
+                    "there is {n} equilibrium that rests on no stop, and number {number} is requested",
+                    "there are {n} equilibria that rest on no stop, and number {number} is requested",
+                    len(places),
                 )
             raise InputError(
                 "equilibrium",
-                what.format(count=len(places), number=equilibrium),
+                what.format(n=len(places), number=equilibrium),
                 _("see centrode equilibrium"),
             )
         return np.asarray(places[equilibrium - 1])

@@ -13,7 +13,7 @@ from centrode.dynamics.forward_dynamics.equations_of_motion import EquationsOfMo
 from centrode.dynamics.forward_dynamics.initial_position import close_position, units_of
 from centrode.dynamics.state import length_unit
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import constraints_of, is_drive
@@ -125,7 +125,7 @@ def _consistent_speeds(equations: EquationsOfMotion, coordinates: Array, speeds:
         # one after the other, so that what contradicts those before it is named
         wanted = _speed_rows(equations, coordinates, path)
         if len(wanted) != len(numbers):
-            what = _("it takes {count} numbers").format(count=len(wanted))
+            what = ngettext("it takes {n} number", "it takes {n} numbers", len(wanted)).format(n=len(wanted))
             raise InputError(f"[simulation.speeds] {path}", what, _("give one for each axis"))
         rows += wanted
         right += numbers

@@ -38,7 +38,7 @@ from centrode.kinematics.motion import dataset_of, vocabulary_variable
 from centrode.kinematics.path import SampleGrid, places_of
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.model import reading
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.mechanism import Mechanism, kept_by_mechanism
@@ -359,7 +359,7 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
         if isinstance(count, bool) or not 1 <= count <= reading.SAMPLES:
             raise InputError(
                 _("samples"),
-                _("{samples} samples are given").format(samples=count),
+                ngettext("{n} sample is given", "{n} samples are given", count).format(n=count),
                 _("give 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)

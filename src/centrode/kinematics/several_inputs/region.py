@@ -30,7 +30,7 @@ from centrode.kinematics.several_inputs.limits import (
     named_drive,
     value_of,
 )
-from centrode.locale import _, speaking
+from centrode.locale import _, ngettext, speaking
 from centrode.model.examples.catalogue import MechanismSource, mechanism_of
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Drive, Mechanism
@@ -249,7 +249,7 @@ def _check_asked(pair: tuple[str, str], ranges: Ranges | None, samples: int) -> 
     if isinstance(samples, bool) or not 2 <= samples <= MOST_NODES:
         raise InputError(
             _("samples"),
-            _("{samples} samples are given").format(samples=samples),
+            ngettext("{n} sample is given", "{n} samples are given", samples).format(n=samples),
             _("give {least} to {most}").format(least=2, most=MOST_NODES),
         )
     for given in ranges or {}:
@@ -447,7 +447,11 @@ def _two_drives(mechanism: Mechanism, drives: Sequence[str] | None) -> tuple[str
     if len(chosen) != 2 or chosen[0] == chosen[1]:
         raise InputError(
             "drives",
-            _("a region needs two different drives; {n} are given").format(n=len(set(chosen))),
+            ngettext(
+                "a region needs two different drives; {n} is given",
+                "a region needs two different drives; {n} are given",
+                len(set(chosen)),
+            ).format(n=len(set(chosen))),
             _("name two of: {names}").format(names=", ".join(names)),
         )
     return chosen[0], chosen[1]
