@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -65,3 +66,60 @@ def test_every_sentence_of_the_page_is_one_of_the_server() -> None:
         said |= {key for found in SAID.findall(file.read_text("utf-8")) for key in found if key}
     assert len(said) > 80
     assert said <= set(WORDS)
+
+
+def called(module: str, function: str, argument: object) -> Any:
+    """What a function of a module of the page returns, from Node."""
+    if shutil.which("node") is None or not (FRONT / "node_modules").is_dir():
+        pytest.skip("no node or no packages of npm: npm ci in src/centrode/app/front")
+    program = (
+        'import { build } from "esbuild";'
+        f'const made = await build({{ entryPoints: ["{module}.ts"], bundle: true, format: "esm", write: false }});'
+        'const room = await import("data:text/javascript;base64," + Buffer.from(made.outputFiles[0].contents)'
+        '.toString("base64"));'
+        f"console.log(JSON.stringify(room.{function}({json.dumps(argument)})));"
+    )
+    done = subprocess.run(
+        ["node", "--input-type=module", "--eval", program],
+        cwd=FRONT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(
+    ("paths", "told"),
+    [
+        (["points.B.0", "points.B.1", "points.C.0"], "points.B, points.C"),
+        (["frame.points.A.1", "frame.points.D.0"], "frame.points.A, frame.points.D"),
+        (["links.AB.length", "links.AB.length"], "links.AB.length"),
+        (
+            ["links.AB.points.C.0", "links.AB.points.C.1", "links.BC.angle"],
+            "links.AB.points.C, links.BC.angle",
+        ),
+        (["links.AB.length", "links.AB.angle", "links.BC"], "links.AB, links.BC"),
+        (["drives.0.start", "drives.1"], "drives.0.start, drives.1"),
+        (["drives.0", "drives.0.speed"], "drives.0"),
+        ([f"points.{name}.0" for name in "ABCDEF"], "points.A, points.B, points.C, points.D, …"),
+    ],
+)
+def test_elements_that_an_edit_changed_are_told_once(paths: list[str], told: str) -> None:
+    assert called("changes", "changedText", paths) == told
+
+
+@pytest.mark.parametrize(
+    ("plain", "typeset"),
+    [
+        ("within 1.2e-03 m/s² of", "within 1.2·10⁻³\u00a0m/s² of"),
+        ("3.6e-14 1/s in", "3.6·10⁻¹⁴\u00a01/s in"),
+        ("2e+05 1/(m·rad)", "2·10⁵\u00a01/(m·rad)"),
+        ("-1.5 Н·м/рад", "−1.5\u00a0Н·м/\u2060рад"),
+        ("12 °/s", "12\u00a0°/s"),
+        ("12 samples", "12 samples"),
+        ("0e+00 m", "0\u00a0m"),
+    ],
+)
+def test_a_number_keeps_its_power_and_its_unit(plain: str, typeset: str) -> None:
+    assert called("typeset", "typeset", plain) == typeset

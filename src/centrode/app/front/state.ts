@@ -1,5 +1,6 @@
 // The state of the page: the text of a description, and what the server says of it.
 import { batch, computed, effect, signal } from "@preact/signals";
+import { changedText } from "./changes";
 import { Connection, type Request, SUPERSEDED } from "./connection";
 import { History, type KeptStep, type TextFile } from "./history";
 import { type Motion, coursesOf, motionOf } from "./motion";
@@ -174,7 +175,7 @@ export function accept(answer: Reading): void {
   text.value = answer.text;
   take(answer);
   settle();
-  tell(answer.changed?.length ? say("changed", { paths: answer.changed.slice(0, 4).join(", ") }) : "");
+  tell(answer.changed?.length ? say("changed", { paths: changedText(answer.changed) }) : "");
   renew();
 }
 
