@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import re
 import unicodedata
 from collections import Counter
 from xml.etree import ElementTree as Xml
 
 import pytest
+from fontTools.ttLib import TTFont
 
 import centrode as ct
 from centrode.equations.spelling import FormulaSpelling
 from centrode.render.document.typst import TypstSpelling
+from centrode.report.html.fonts import cut_font, font_letters
 from centrode.report.html.mathematics import formulas_of
 from centrode.report.mathematics import fragments_of
 from equation_pages import Relation, entries
@@ -68,6 +71,18 @@ def test_a_fraction_a_root_an_index() -> None:
     assert [part.tag for part in (fraction, plus, power)] == ["mfrac", "mo", "msubsup"]
     assert fraction[1].tag == "msqrt"
     assert letters("".join(power.itertext())) == "x12"
+
+
+def test_the_font_of_a_page_has_the_sign_of_its_roots() -> None:
+    """No text holds the sign: browsers take it from the font, and its taller forms, or draw no root at all."""
+    formulas = formulas_of(["frac(a, sqrt(b))"])
+    assert "\u221a" not in "".join(text for one in formulas.found.values() for text in one.itertext())
+    font = TTFont(io.BytesIO(cut_font(font_letters(formulas.letters, (), ""))))
+    sign = font.getBestCmap()[0x221A]
+    variants = font["MATH"].table.MathVariants
+    place = variants.VertGlyphCoverage.glyphs.index(sign)
+    assert variants.VertGlyphConstruction[place].VariantCount > 1
+    assert 0x221A not in TTFont(io.BytesIO(cut_font(formulas_of(["a + b"]).letters))).getBestCmap()
 
 
 def test_dots_stand_above_their_letter() -> None:

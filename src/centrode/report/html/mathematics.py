@@ -16,6 +16,7 @@ from centrode.report.mathematics import fragments_of
 FORMULA = re.compile(r"<math\b.*?</math>", re.DOTALL)
 STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
 ARROW = "\u20d7"
+RADICAL, ROOTS = "\u221a", ("msqrt", "mroot")
 ABOVE = {"\u0307": "\u02d9", "\u0308": "\u00a8", ARROW: "\u2192"}
 """Combining signs stand left of their letter in browsers; the spacing ones stand above it."""
 SIGNS = {"+", "\u2212", "-", "±", "∓"}
@@ -32,8 +33,10 @@ class Formulas:
 
     @property
     def letters(self) -> frozenset[str]:
-        """All letters of the formulas."""
-        return frozenset(letter for one in self.found.values() for text in one.itertext() for letter in text)
+        """All letters of the formulas, and the sign of roots, which no text of theirs has."""
+        found = frozenset(letter for one in self.found.values() for text in one.itertext() for letter in text)
+        rooted = any(part.tag in ROOTS for one in self.found.values() for part in one.iter())
+        return found | {RADICAL} if rooted else found
 
     def inline(self, spelled: str) -> str:
         """A formula in a sentence."""
