@@ -18,7 +18,7 @@ from centrode.animation.frames import frame_ways
 from centrode.animation.layers import Array, Layer
 from centrode.animation.stage import Stage
 from centrode.animation.video_files import PER_SECOND, SIZE, Said, Timing, no_progress, write_stage
-from centrode.gears.profiles import wheel_outline
+from centrode.gears.profiles import rack_over_pinion, wheel_outline
 from centrode.gears.racks import rack_positions, rack_tooth
 from centrode.locale import _
 from centrode.model.settings import shown_as
@@ -36,6 +36,8 @@ PITCHES_SHOWN = 2.6
 FRAMES_OF_GENERATION = 60
 ROLLED = 1.5
 """The rack rolls by so many pitches to either side."""
+SHOWN_RACK_TEETH = 6
+"""Teeth of a rack that are drawn to either side of the pinion."""
 RACK_TEETH = 5
 
 
@@ -60,7 +62,7 @@ class MeshLayer(Layer):
         pair, turned = self.pair, float(self.turned[frame])
         placed = [_turn(self.outlines[0], -turned)]
         if pair.kind == "rack":
-            return [*placed, _rack(pair, pair.wheels[0].pitch / 2 * turned)]
+            return [*placed, rack_over_pinion(pair, SHOWN_RACK_TEETH, pair.wheels[0].pitch / 2 * turned)]
         step = 2 * math.pi / pair.teeth[1]
         # A gap of the wheel takes the pinion's tooth at the pitch point.
         begin = step / 2 + (math.pi if pair.sign > 0 else 0.0)
@@ -185,23 +187,6 @@ def _on_line(pair: PairGeometry, radii: Array) -> Array:
     along = np.array([math.cos(angle), math.sin(angle)])
     # The pinion turns clockwise: its driving flanks touch on the right of their teeth.
     return np.asarray(pitch + np.outer(radii - pair.pitch_curvature_radius, along))
-
-
-def _rack(pair: PairGeometry, along: float) -> Array:
-    """Outline (n, 2) of the rack over the pinion, moved to the right."""
-    module, slope = pair.transverse.module, math.tan(pair.transverse.pressure_angle)
-    line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module
-    tip, root, half = pair.rack.addendum * pair.module, pair.transverse.dedendum, math.pi * module / 4
-    corners = []
-    for tooth in range(-6, 6):
-        middle = (tooth + 0.5) * math.pi * module + along
-        corners += [
-            (middle - half - root * slope, line + root),
-            (middle - half + tip * slope, line - tip),
-            (middle + half - tip * slope, line - tip),
-            (middle + half + root * slope, line + root),
-        ]
-    return np.array(corners)
 
 
 def mesh_stage(

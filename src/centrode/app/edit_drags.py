@@ -295,13 +295,7 @@ def allowed_place(sketch: SketchParts, point: str, to: tuple[float, float]) -> t
         for through, direction in [guide_line(sketch, k)]
         if through is not None and direction is not None
     ]
-    circles = []
-    for name in sketch.owners(point):
-        length = sketch.length(name)
-        if f"links.{name}.length" in sketch.marks["locked"] and length is not None:
-            other = next(one for one in sketch.links[name] if one != point)
-            if other in sketch.places:
-                circles.append((sketch.places[other], length))
+    circles = list(_locked_circles(sketch, point))
     if len(lines) + len(circles) > 2 or len(lines) > 1:
         return sketch.places[point], _("what is locked leaves this joint no freedom")
     if lines and circles:
@@ -323,12 +317,7 @@ def allowed_on_sphere(sketch: SketchParts, point: str, to: Vector) -> tuple[Vect
         if circle is not None:
             circles.append(circle)
     guided = bool(circles)
-    for name in sketch.owners(point):
-        length = sketch.length(name)
-        if f"links.{name}.length" in sketch.marks["locked"] and length is not None:
-            other = next(one for one in sketch.links[name] if one != point)
-            if other in sketch.places:
-                circles.append((sketch.places[other], length))
+    circles += _locked_circles(sketch, point)
     if not circles:
         return to, ""
     if len(circles) > 1:
@@ -339,6 +328,16 @@ def allowed_on_sphere(sketch: SketchParts, point: str, to: Vector) -> tuple[Vect
         return sketch.places[point], _("what is locked leaves this joint no freedom")
     allowed = tuple(math.cos(radius) * y + math.sin(radius) * x for x, y in zip(way, pole, strict=True))
     return allowed, _("the joint stays on its guide") if guided else _("the locked length holds")
+
+
+def _locked_circles(sketch: SketchParts, point: str) -> Iterator[tuple[Vector, float]]:
+    """Centre and radius of the circles on which locked lengths keep a point, about the other points of its links."""
+    for name in sketch.owners(point):
+        length = sketch.length(name)
+        if f"links.{name}.length" in sketch.marks["locked"] and length is not None:
+            other = next(one for one in sketch.links[name] if one != point)
+            if other in sketch.places:
+                yield sketch.places[other], length
 
 
 def on_line(through: Vector, direction: float, to: Vector) -> Vector:

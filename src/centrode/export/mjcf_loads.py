@@ -124,13 +124,18 @@ def _all_of(value: object) -> Sequence[object]:
     return value if isinstance(value, tuple) else (value,)
 
 
+def load_between_points(name: str, load: PointSpring | PointDamper, sites: tuple[str, ...]) -> TendonLoad:
+    """A spring or damper between two points as a tendon between their sites."""
+    if isinstance(load, PointDamper):
+        return TendonLoad(name, sites, {}, {"damping": number(load.damping)})
+    properties = {"stiffness": number(load.stiffness), "springlength": number(load.free_length or 0.0)}
+    return TendonLoad(name, sites, {}, properties)
+
+
 def _model_load(pose: Pose, name: str, load: AnyLoad) -> HeldLoad | None:
     match load:
-        case PointSpring(points=points, stiffness=stiffness, free_length=free):
-            properties = {"stiffness": number(stiffness), "springlength": number(free or 0.0)}
-            return TendonLoad(name, _sites(pose, points), {}, properties)
-        case PointDamper(points=points, damping=damping):
-            return TendonLoad(name, _sites(pose, points), {}, {"damping": number(damping)})
+        case PointSpring(points=points) | PointDamper(points=points):
+            return load_between_points(name, load, _sites(pose, points))
         case HingeSpring(link=link, relative_to=base, stiffness=stiffness, free_angle=free):
             # the coordinates of joints count from the initial position
             rest = (free or 0.0) - (pose.angles[link] - pose.angles[base])

@@ -43,6 +43,7 @@ from centrode.export.mjcf_loads import (
     TendonLoad,
     fixed_tendon,
     held_loads,
+    load_between_points,
     resting_length,
 )
 from centrode.locale import _
@@ -363,11 +364,8 @@ def _turning_load(
     pose: SpherePose, motion: xarray.Dataset, name: str, load: AnyLoad
 ) -> TendonLoad | ActuatorLoad | None:
     match load:
-        case PointSpring(points=points, stiffness=stiffness, free_length=free):
-            properties = {"stiffness": number(stiffness), "springlength": number(free or 0.0)}
-            return TendonLoad(name, _sites(pose, points), {}, properties)
-        case PointDamper(points=points, damping=damping):
-            return TendonLoad(name, _sites(pose, points), {}, {"damping": number(damping)})
+        case PointSpring(points=points) | PointDamper(points=points):
+            return load_between_points(name, load, _sites(pose, points))
         case PointForce(point=point, vector=(float(x), float(y), float(z)), axes="frame", while_moving=None):
             gear = numbers((x, y, z, 0.0, 0.0, 0.0))
             return ActuatorLoad(name, {"site": _sites(pose, (point,))[0], "refsite": WORLD_SITE, "gear": gear},

@@ -174,3 +174,28 @@ def wheel_outline(profile: ToothProfile) -> Array:
         # From the gap on the right over the tip to the gap on the left: the next tooth is the one on the left.
         outline.append(tooth @ np.array([[cosine, -sine], [sine, cosine]]))
     return np.concatenate([*outline, outline[0][:1]])
+
+
+def rack_over_pinion(pair: PairGeometry, teeth: int, along: float = 0.0) -> Array:
+    """Outline (n, 2) [m] of a rack over the pinion of a pair, whose gap takes the pinion's tooth.
+
+    Parameters
+    ----------
+    teeth : to either side
+    along : by how much it is moved to the right [m]
+    """
+    module, angle = pair.transverse.module, pair.transverse.pressure_angle
+    line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module
+    tip, root = pair.rack.addendum * pair.module, pair.transverse.dedendum
+    # half of a tooth at the rack's reference line, and what the flank gains towards the tip and the root
+    half, slope = math.pi * module / 4, math.tan(angle)
+    corners = []
+    for tooth in range(-teeth, teeth):
+        middle = (tooth + 0.5) * math.pi * module + along
+        corners += [
+            (middle - half - root * slope, line + root),
+            (middle - half + tip * slope, line - tip),
+            (middle + half - tip * slope, line - tip),
+            (middle + half + root * slope, line + root),
+        ]
+    return np.array(corners)

@@ -41,7 +41,7 @@ from centrode.structure.groups import (
     Touch,
     TwoPointLink,
 )
-from centrode.structure.plan import drives_against_mobility
+from centrode.structure.plan import Structure, drives_against_mobility
 from centrode.structure.rank import residuals_at
 
 Number: TypeAlias = Any
@@ -370,6 +370,19 @@ RESIDUAL_TOLERANCE = 1e-9
 """Greatest residual of a closed mechanism, in units of its greatest length."""
 
 
+def refuse_surplus_drives(structure: Structure) -> None:
+    """Refuse more drives than a mechanism has mobility: they tear groups apart and contradict each other.
+
+    A mechanism that is rigid at a generic position may move by its special dimensions: it is not refused here.
+    """
+    if 1 <= structure.generic_mobility < structure.drives:
+        raise InputError(
+            "[[drives]]",
+            drives_against_mobility(structure.drives, structure.generic_mobility),
+            _("give as many drives as the mobility"),
+        )
+
+
 def check_fit(kinematics: Kinematics, at: Positions) -> float:
     """Worst residual (see `residuals_at`); refuse a position in which a constraint does not hold."""
     structure = kinematics.structure
@@ -380,13 +393,8 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
     label = max(residuals, key=lambda name: residuals[name][0])
     value, angular = residuals[label]
     if value > RESIDUAL_TOLERANCE:
-        if 1 <= structure.generic_mobility < structure.drives:
-            # the drives contradict each other: that is what is wrong, not a length
-            raise InputError(
-                "[[drives]]",
-                drives_against_mobility(structure.drives, structure.generic_mobility),
-                _("give as many drives as the mobility"),
-            )
+        # surplus drives contradict each other: that is what is wrong, not a length
+        refuse_surplus_drives(structure)
         space = kinematics.numbers.space
         off, unit = (value, "rad") if angular else (value * float(kinematics.numbers.scale), space.unit)
         raise InputError(

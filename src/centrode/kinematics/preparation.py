@@ -10,7 +10,7 @@ import numpy as np
 
 from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled, assemble
-from centrode.kinematics.assembly_mode import RESIDUAL_TOLERANCE, length_misfits
+from centrode.kinematics.assembly_mode import RESIDUAL_TOLERANCE, length_misfits, refuse_surplus_drives
 from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
@@ -76,24 +76,11 @@ def ready(mechanism: Mechanism) -> Ready:
     kinematics = Kinematics(structure, structure.dimensions, path)
     if any(isinstance(group, Newton) for group in structure.groups):
         # before assembling, as groups of higher class would fail first and be reported instead
-        _refuse_surplus_drives(structure)
+        refuse_surplus_drives(structure)
     assembled = assemble(kinematics)
     kinematics = replace(kinematics, numbers=assembled.numbers)
     mobility = _mobility(kinematics, assembled)
     return Ready(kinematics, assembled, mobility)
-
-
-def _refuse_surplus_drives(structure: Structure) -> None:
-    """Surplus drives tear groups apart: tell these rather than the group that is left over.
-
-    A mechanism that is rigid at a generic position may move by its special dimensions.
-    """
-    if 1 <= structure.generic_mobility < structure.drives:
-        raise InputError(
-            "[[drives]]",
-            drives_against_mobility(structure.drives, structure.generic_mobility),
-            _("give as many drives as the mobility"),
-        )
 
 
 def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:

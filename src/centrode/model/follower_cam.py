@@ -37,7 +37,15 @@ from centrode.model.reading import (
     missing_key,
     value_text,
 )
-from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
+from centrode.model.segments import (
+    DRIVEN,
+    UNITS,
+    foreign_keys,
+    plain_rate,
+    problems_of_end,
+    read_degree,
+    read_through,
+)
 from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import Angle, Flag, Text, not_negative, positive, quantity, si
 from centrode.numerics.jets import Jet, JetFunctions
@@ -338,12 +346,8 @@ class LiftSegment(DescriptionPart):
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given, by the rules of this part."""
-        wrong = super().key_problems(given)
+        wrong = super().key_problems(given) + problems_of_end(given)
         curve = given.get("curve")
-        if curve == laws.DWELL and given.get("to") is not None:
-            wrong.append(Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it")))
-        if curve != laws.DWELL and given.get("to") is None:
-            wrong.append(missing_key("to"))
         if curve is None and not given.get("lift"):
             wrong.append(missing_key("curve"))
         if curve == laws.FORMULA and not given.get("lift"):

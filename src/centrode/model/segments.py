@@ -87,12 +87,7 @@ class Segment(DescriptionPart):
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given, by the rules of this part."""
-        wrong = super().key_problems(given)
-        curve = given.get("curve")
-        if curve == laws.DWELL and given.get("to") is not None:
-            wrong.append(Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it")))
-        if curve != laws.DWELL and given.get("to") is None:
-            wrong.append(missing_key("to"))
+        wrong = super().key_problems(given) + problems_of_end(given)
         return wrong + foreign_keys(given, _BY_CONDITIONS) + _gaps(given, AT_START) + _gaps(given, AT_END)
 
     @field_validator("to", mode="plain")
@@ -141,6 +136,14 @@ class Segment(DescriptionPart):
 
     def _rates(self, keys: tuple[str, ...]) -> tuple[float, ...]:
         return tuple(number for key in keys if (number := getattr(self, key)) is not None)
+
+
+def problems_of_end(given: Mapping[str, Any]) -> list[Problem]:
+    """What is wrong with where a segment leads to: a dwell stays where it is, every other curve needs an end."""
+    is_dwell, has_end = given.get("curve") == laws.DWELL, given.get("to") is not None
+    if is_dwell and has_end:
+        return [Problem(_("the lift stays constant in a dwell, so it has no `to`"), _("remove it"))]
+    return [] if is_dwell or has_end else [missing_key("to")]
 
 
 def foreign_keys(given: Mapping[str, Any], keys: Sequence[str]) -> list[Problem]:

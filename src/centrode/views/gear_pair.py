@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from centrode.gears.blocking_contour import LEAST_CONTACT_RATIO, LEAST_TIP_THICKNESS
-from centrode.gears.profiles import whole_tooth
+from centrode.gears.profiles import rack_over_pinion, whole_tooth
 from centrode.gears.racks import rack_positions, rack_tooth
 from centrode.gears.shift_fields import shift_fields
 from centrode.numerics.outline_pieces import OutlinePiece
@@ -49,6 +49,7 @@ from centrode.sheets.texts import (
     Unit,
 )
 from centrode.views.gear_pair_chapters import (
+    PAIR_KINDS,
     contact_chapter,
     contour_chapter,
     data_chapter,
@@ -161,13 +162,8 @@ def _facts(results: GearPairResults) -> Iterator[Fact]:
 
 def _facts_of_shifts(results: GearPairResults) -> Iterator[Fact]:
     pair, described = results.geometry, results.gear_pair
-    kinds = {
-        "external": Sentence("external"),
-        "internal": Sentence("internal"),
-        "rack": Sentence("wheel and rack"),
-    }
     teeth = Sentence("helical teeth") if pair.helix_angle else Sentence("spur teeth")
-    yield Fact(Sentence("pair"), Joined((kinds[pair.kind], teeth)))
+    yield Fact(Sentence("pair"), Joined((PAIR_KINDS[pair.kind], teeth)))
     yield Fact(Sentence("module"), Number(pair.module, "m"))
     if pair.helix_angle:
         yield Fact(Sentence("helix angle"), Number(pair.helix_angle, "rad"))
@@ -594,21 +590,7 @@ def _arc(centre: tuple[float, float], radius: float, up: int, half: float) -> Ar
 
 def rack_line(pair: PairGeometry) -> Array:
     """Teeth of the rack whose gap takes the pinion's tooth."""
-    module, angle = pair.transverse.module, pair.transverse.pressure_angle
-    line = pair.wheels[0].pitch / 2 + pair.shifts[0] * pair.module
-    tip, root = pair.rack.addendum * pair.module, pair.transverse.dedendum
-    # Half of a tooth at the rack's reference line, and what the flank gains towards the tip and the root.
-    half, slope = math.pi * module / 4, math.tan(angle)
-    corners = []
-    for tooth in range(-RACK_TEETH, RACK_TEETH):
-        middle = (tooth + 0.5) * math.pi * module
-        corners += [
-            (middle - half - root * slope, line + root),
-            (middle - half + tip * slope, line - tip),
-            (middle + half - tip * slope, line - tip),
-            (middle + half + root * slope, line + root),
-        ]
-    return np.array(corners)
+    return rack_over_pinion(pair, RACK_TEETH)
 
 
 def sliding_label(results: GearPairResults) -> Sentence:

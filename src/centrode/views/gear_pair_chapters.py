@@ -29,6 +29,11 @@ if TYPE_CHECKING:
     from centrode.model.gear_pairs import GearPair
 
 Line = tuple[Leaf, ...]
+PAIR_KINDS = {
+    "external": Sentence("external"),
+    "internal": Sentence("internal"),
+    "rack": Sentence("wheel and rack"),
+}
 INV = 'op("inv")'
 ROUNDING = 1e-9
 """Share by which two routes to one number may differ: roundings of differences of nearly equal numbers."""
@@ -37,12 +42,7 @@ ROUNDING = 1e-9
 def data_chapter(results: GearPairResults, purpose: Text | None) -> Chapter:
     """What is given of the pair."""
     pair, described = results.geometry, results.gear_pair
-    kinds = {
-        "external": Sentence("external"),
-        "internal": Sentence("internal"),
-        "rack": Sentence("wheel and rack"),
-    }
-    facts = [Fact(Sentence("gearing"), kinds[pair.kind]), Fact(Sentence("module"), _size(pair.module))]
+    facts = [Fact(Sentence("gearing"), PAIR_KINDS[pair.kind]), Fact(Sentence("module"), _size(pair.module))]
     for number, wheel in enumerate(pair.wheels):
         if not wheel.is_rack:
             label = Sentence("number of teeth of the pinion"), Sentence("number of teeth of the wheel")

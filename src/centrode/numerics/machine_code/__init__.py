@@ -1,7 +1,7 @@
 """Scans as machine code, through llvmlite (the extra `fast`). Without it everything runs on NumPy.
 
-In the order of the work: `relaxing` (what may be rounded otherwise), `operating` and `trigonometry` (operations
-in LLVM's `language`), `loops` (the whole function), `target`, `compiling`, `cache`, `kernels` (what is called).
+In the order of the work: `functions` (operations in LLVM's `language`, vector mathematics by `polynomials`), `loops`
+(the whole function) or `integrations`, `targets` (the processor), `compile`, `cache`, `kernels` (what is called).
 """
 
 from __future__ import annotations
