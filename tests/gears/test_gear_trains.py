@@ -131,7 +131,7 @@ def test_the_nearest_train_does_not_depend_on_how_many_are_kept(
 
 
 def test_an_unreachable_ratio_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """|u| = z_1 z_2'/(z_2' - z_2)(z_1 + z_2) is at most about half the teeth: no sorting of all rows, no second look."""
+    """The ratio z_1 z_2'/((z_2' - z_2)(z_1 + z_2)) is at most half the teeth: rows are made once and few are sorted."""
     counts: Counter[str] = Counter()
 
     def counted(what: str, function: Callable[..., Any], size: Callable[..., int]) -> Callable[..., Any]:

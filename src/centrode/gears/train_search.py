@@ -142,7 +142,7 @@ def _rows_with_misses(
 
 @dataclass
 class _NearestRows:
-    """The rows of nearest ratio, at least so many; millions are coaxial, and to sort them all takes most of a minute."""
+    """The rows of nearest ratio, at least so many: to sort all the millions that are coaxial takes most of a minute."""
 
     least: int
     dropped: bool = False
