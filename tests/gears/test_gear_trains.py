@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
 
 import centrode as ct
 from centrode.errors import InputError, MotionError
+from centrode.gears import train_search
 from centrode.gears.planetary_trains import (
     EXTERNAL,
     SCHEMES,
@@ -108,6 +112,45 @@ def test_lists_are_those_of_brute_force(name: str) -> None:
             assert found.nearest is not None
             assert abs(abs(float(found.nearest.ratio)) / wanted - 1) == pytest.approx(nearest, rel=1e-9)
     assert listed > 30
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_the_nearest_train_does_not_depend_on_how_many_are_kept(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of one row at a time and of all together: those of equal ratio stay together, those that do not work fall out."""
+    bounds = [
+        TrainBounds(wanted, 1e-6, LEAST, MOST[name], PLANETS) for wanted in (900.0, -900.0, 1.00001, 3.14159)
+    ]
+    nearest = []
+    for kept in (1, 30, 10**9):
+        monkeypatch.setattr(train_search, "NEAREST_KEPT", kept)
+        nearest.append([find_trains(name, one).nearest for one in bounds])
+    assert nearest[0] == nearest[1] == nearest[2]
+    assert all(one is not None for one in nearest[0])
+
+
+def test_an_unreachable_ratio_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ratio z_1 z_2'/((z_2' - z_2)(z_1 + z_2)) is at most half the teeth: rows are made once and few are sorted."""
+    counts: Counter[str] = Counter()
+
+    def counted(what: str, function: Callable[..., Any], size: Callable[..., int]) -> Callable[..., Any]:
+        def call(*given: Any) -> Any:
+            answer = function(*given)
+            counts[what] += size(answer)
+            return answer
+
+        return call
+
+    monkeypatch.setattr(train_search, "_ratios", counted("looked at", train_search._ratios, len))
+    monkeypatch.setattr(train_search, "_diameters", counted("sorted", train_search._diameters, len))
+    bounds = TrainBounds(5000.0, 1e-3, 17, 90, PLANETS)
+    rows = sum(len(rows) for rows in train_search._coaxial_rows(SCHEMES["external meshes"], bounds))
+    found = find_trains("external meshes", bounds)
+    assert found.nearest is not None and float(found.nearest.ratio) < 45.5
+    assert rows > 100_000
+    assert counts["looked at"] == rows
+    assert counts["sorted"] <= 4 * train_search.NEAREST_KEPT + rows // 74
 
 
 def test_two_carriers_are_all_products() -> None:

@@ -36,6 +36,9 @@ Train = TypeVar("Train", bound=AnyTrain)
 MOST_TRAINS = 1000
 """So many trains are listed at most, the smallest ones."""
 
+NEAREST_KEPT = 1000
+"""Tooth numbers of nearest ratio among which a train that works is sought first."""
+
 
 @dataclass(frozen=True)
 class TrainBounds:
@@ -107,18 +110,71 @@ def rank_by_size(trains: list[Train]) -> list[Train]:
 
 def _planetary_trains(scheme: PlanetaryScheme, bounds: TrainBounds, driver: Driver) -> FoundTrains:
     within: list[Whole] = [np.empty((0, 4), np.int64)]
-    for rows in _coaxial_rows(scheme, bounds):
-        within.append(rows[bounds.misses(_ratios(scheme, rows, driver)) <= bounds.tolerance])
+    nearest = _NearestRows(NEAREST_KEPT)
+    for rows, misses in _rows_with_misses(scheme, bounds, driver):
+        within.append(rows[misses <= bounds.tolerance])
+        nearest.add(rows, misses)
     rows = np.concatenate(within)
     order = np.lexsort((*rows.T[::-1], _diameters(scheme, rows)))
     working = _working_trains(scheme, rows[order], bounds.planets, driver)
     found = list(islice(working, MOST_TRAINS + 1))
     if found:
         return FoundTrains(tuple(found[:MOST_TRAINS]), more=len(found) > MOST_TRAINS)
-    rows = np.concatenate([*_coaxial_rows(scheme, bounds)])
-    misses = bounds.misses(_ratios(scheme, rows, driver))
-    order = np.lexsort((*rows.T[::-1], _diameters(scheme, rows), misses))
-    return FoundTrains((), next(_working_trains(scheme, rows[order], bounds.planets, driver), None))
+    while True:
+        rows, misses = nearest.kept
+        order = np.lexsort((*rows.T[::-1], _diameters(scheme, rows), misses))
+        train = next(_working_trains(scheme, rows[order], bounds.planets, driver), None)
+        if train is not None or not nearest.dropped:
+            return FoundTrains((), train)
+        # the meshes of none of them work: many more are looked at
+        nearest = _NearestRows(20 * nearest.least)
+        for rows, misses in _rows_with_misses(scheme, bounds, driver):
+            nearest.add(rows, misses)
+
+
+def _rows_with_misses(
+    scheme: PlanetaryScheme, bounds: TrainBounds, driver: Driver
+) -> Iterator[tuple[Whole, NDArray[np.float64]]]:
+    """The rows of each sun, and by how much their ratios miss that which is sought."""
+    for rows in _coaxial_rows(scheme, bounds):
+        yield rows, bounds.misses(_ratios(scheme, rows, driver))
+
+
+@dataclass
+class _NearestRows:
+    """The rows of nearest ratio, at least so many: to sort all the millions that are coaxial takes most of a minute."""
+
+    least: int
+    dropped: bool = False
+    _rows: list[Whole] = field(default_factory=lambda: [np.empty((0, 4), np.int64)])
+    _misses: list[NDArray[np.float64]] = field(default_factory=lambda: [np.empty(0)])
+    _worst: float = math.inf
+    _count: int = 0
+    _room: int = 0
+
+    def add(self, rows: Whole, misses: NDArray[np.float64]) -> None:
+        """Rows that may be among the nearest; all those of one miss stay together."""
+        near = misses <= self._worst
+        self.dropped = self.dropped or not near.all()
+        self._rows.append(rows[near])
+        self._misses.append(misses[near])
+        self._count += int(near.sum())
+        if self._count > max(self._room, 4 * self.least):
+            self._drop()
+
+    def _drop(self) -> None:
+        rows, misses = self.kept
+        self._worst = float(np.partition(misses, self.least - 1)[self.least - 1])
+        near = misses <= self._worst
+        self.dropped = self.dropped or not near.all()
+        self._rows, self._misses = [rows[near]], [misses[near]]
+        # of one miss there may be more than any bound
+        self._count, self._room = int(near.sum()), 4 * int(near.sum())
+
+    @property
+    def kept(self) -> tuple[Whole, NDArray[np.float64]]:
+        """Rows and their misses, in the order in which they came."""
+        return np.concatenate(self._rows), np.concatenate(self._misses)
 
 
 def _working_trains(

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from numpy.polynomial import Chebyshev
 
 import centrode as ct
 from centrode.dynamics.equilibria.small_motions import ASYMPTOTIC, NEUTRAL, STABILITIES, STABLE, UNSTABLE
@@ -15,6 +16,10 @@ from sprung import SPHERE, five_bar, pendulum, sprung_four_bar
 # mpmath, 30 digits: the closed form of the dyad and derivatives of the energies (shared references of issue 30)
 FOUR_BAR_AT = 0.34650872169043329
 FIVE_BAR_AT, FIVE_BAR_ENERGY = (-0.234679831669363, 0.940758482527631), 3.70183189520561
+ONE_ROD = {
+    "frame": {"points": {"D": [0, 0]}},
+    "links": {"DC": {"length": 1, "mass": 1, "shape": "rod", "angle": 0}},
+}
 PRINTED = 5e-15
 """Half a unit of the last digit."""
 
@@ -78,6 +83,48 @@ def test_held_pendulum_takes_the_moment_of_its_weight() -> None:
     assert np.allclose(np.sort(found.angle.sel(link="AB").values), [-math.pi / 2, math.pi / 2], atol=1e-12)
     weight = 9.81 * (1 * 0.5 + 2 * 1.0) * math.cos(math.pi / 3)
     assert np.allclose(found.holding_moment.values, weight, rtol=1e-13)
+
+
+def test_turns_of_links_that_no_load_counts_are_one_equilibrium() -> None:
+    """A torsion spring on the first of two rods: its turns are others, those of the second rod are not.
+
+    With k (q - q0) the moment of the spring and w the weight that the first rod bears, the roots of k (q - q0) +
+    w cos q; the second rod hangs or stands.
+    """
+    stiffness, free = 6.0, 0.4
+    two = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={
+            "OA": {"length": 1, "mass": 1, "shape": "rod", "angle": 0},
+            "AB": {"length": 0.5, "mass": 2, "shape": "rod", "angle": 0},
+        },
+        loads=[{"name": "k", "kind": "spring", "link": "OA", "stiffness": stiffness, "free_angle": free}],
+    )
+    moment = Chebyshev.interpolate(
+        lambda q: stiffness * (q - free) + 9.81 * (1 * 0.5 + 2 * 1.0) * np.cos(q), 60, (-8, 8)
+    )
+    roots = np.sort([root.real for root in moment.roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 8])
+    found = ct.equilibrium(two)
+    first, second = (found.angle.sel(link=link).values for link in ("OA", "AB"))
+    assert found.sizes["equilibrium"] == 2 * len(roots) == 6
+    for sine in (-1.0, 1.0):
+        assert np.allclose(np.sort(first[np.abs(np.sin(second) - sine) < 1e-9]), roots, atol=1e-9)
+
+
+def test_turns_of_a_crank_are_one_equilibrium_where_a_spring_counts_those_of_the_rocker() -> None:
+    spring = {"name": "k", "kind": "spring", "link": "DC", "stiffness": 2.0, "free_angle": 1.2}
+    loads = ct.Mechanism(loads=[spring], **ONE_ROD).loads
+    assert ct.equilibrium(sprung_four_bar(loads=loads)).sizes["equilibrium"] == 2
+
+
+def test_a_spring_of_the_crank_counts_its_turns() -> None:
+    """k (q - q0) + w cos q = 0 of one rod on a soft spring: as many equilibria as roots, a turn apart or not."""
+    spring = {"name": "k", "kind": "spring", "link": "OA", "stiffness": 1e-3, "free_angle": 0.0}
+    found = ct.equilibrium(pendulum(loads=[spring]))
+    angles = np.sort(found.angle.sel(link="OA").values)
+    assert np.allclose(1e-3 * angles + 9.81 * 0.5 * np.cos(angles), 0.0, atol=1e-9)
+    assert np.min(np.diff(angles)) > 1.0 and np.max(angles) - np.min(angles) > 2.0 * math.pi
 
 
 def test_sphere_hangs_where_its_energy_is_least() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -11,7 +12,10 @@ import numpy.typing as npt
 
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 from centrode.dynamics.equilibria.pressed_friction import held_by_friction
-from centrode.dynamics.load_coordinates import Spin, Turn
+from centrode.dynamics.load_coordinates import Coordinate, Spin, Turn
+from centrode.dynamics.loads import LoadTerm
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -62,14 +66,62 @@ class ConfigurationCurve:
 
 def repeats_with_position(loaded: LoadedMechanism) -> bool:
     """Whether whole turns of links change no load: none depends on the value of an angle but by its sine and cosine."""
-    terms = [load.term for load in loaded.equations.loads]
-    terms += [friction.term for friction in loaded.frictions]
-    if any(isinstance(one.measures, Turn | Spin) and one.uses_place for one in loaded.equations.controls):
-        return False
-    return not any(
-        "q" in term.amount.uses or ("x" in term.amount.uses and isinstance(term.coordinate, Turn | Spin))
-        for term in terms
-    )
+    return not counts_drive(loaded) and not counted_turns(loaded)
+
+
+def counts_drive(loaded: LoadedMechanism) -> bool:
+    """Whether a load depends on the value of the drive, turns and all."""
+    return any("q" in term.amount.uses for term in _terms(loaded))
+
+
+def counted_turns(loaded: LoadedMechanism) -> tuple[Turn | Spin, ...]:
+    """Angles whose values loads and controllers depend on, turns and all: torsion springs and the like."""
+    found = [term.coordinate for term in _terms(loaded) if "x" in term.amount.uses]
+    found += [one.measures for one in loaded.equations.controls if one.measures and one.uses_place]
+    return tuple(dict.fromkeys(one for one in found if isinstance(one, Turn | Spin)))
+
+
+def _terms(loaded: LoadedMechanism) -> list[LoadTerm]:
+    loads = [load.term for load in loaded.equations.loads]
+    return loads + [friction.term for friction in loaded.frictions]
+
+
+def counted_values(loaded: LoadedMechanism, places: Array) -> Array:
+    """Values of the counted turns (n, turns) [rad] at positions (n, coordinates)."""
+    return coordinate_values(loaded, counted_turns(loaded), places)
+
+
+def coordinate_values(loaded: LoadedMechanism, asked: Sequence[Coordinate], places: Array) -> Array:
+    """Values of coordinates of loads or stops (n, asked) [rad or m] at positions (n, coordinates)."""
+    tree, places = loaded.equations.tree, places[:, : loaded.joints]
+    jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
+    state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
+    found = [one.value(state) for one in asked]
+    return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(asked), len(places)).T
+
+
+def uncounted_angles(loaded: LoadedMechanism) -> npt.NDArray[np.bool_]:
+    """Which coordinates are angles whose whole turns change no load, whatever the others are."""
+    if counts_drive(loaded):
+        return np.zeros_like(loaded.angles)
+    turned = np.vstack([loaded.start, loaded.start + 2.0 * np.pi * np.eye(loaded.size)])
+    # wheels that mesh close by the values of their angles
+    left, _rows = loaded.closures_at(turned)
+    values = np.concatenate([counted_values(loaded, turned), left / loaded.equation_units], axis=1)
+    return np.asarray(loaded.angles & np.all(np.abs(values[1:] - values[0]) < 1e-3, axis=1))
+
+
+def position_distance(loaded: LoadedMechanism, places: Array, other: Array) -> Array:
+    """How far positions (n, coordinates) are from another one in all that loads depend on: whole turns that none of
+    them counts are none.
+    """
+    if counts_drive(loaded):
+        return np.asarray(np.max(np.abs((places - other) / loaded.units), axis=-1, initial=0.0))
+    found = same_position(loaded, places, other)
+    if not counted_turns(loaded):
+        return found
+    counted = counted_values(loaded, np.concatenate([places, other[None]]))
+    return np.maximum(found, np.max(np.abs(counted[:-1] - counted[-1]), axis=1))
 
 
 def same_position(loaded: LoadedMechanism, places: Array, other: Array) -> Array:

@@ -18,8 +18,9 @@ import numpy.typing as npt
 from centrode.dynamics.equilibria.configuration_curve import (
     ConfigurationCurve,
     configuration_curve,
-    repeats_with_position,
-    same_position,
+    coordinate_values,
+    position_distance,
+    uncounted_angles,
 )
 from centrode.dynamics.equilibria.linear_equations import LinearEquations, LoadedMechanism
 from centrode.dynamics.forward_dynamics.contacts import StopPush, stop_coordinate
@@ -27,7 +28,6 @@ from centrode.dynamics.loads import Situation
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, ngettext
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -323,11 +323,7 @@ def _moved_positions(
 def stop_values(loaded: LoadedMechanism, places: Array) -> Array:
     """Coordinates of all stops (n, stops) [rad or m] at positions (n, coordinates)."""
     stops = loaded.mechanism.stops
-    tree, places = loaded.equations.tree, places[:, : loaded.joints]
-    jets = [Jet((x, np.zeros(len(places)), np.zeros(len(places)))) for x in places.T]
-    state = loaded.equations.state(ARRAYS, tree.values(ARRAYS, list(places.T)), jets, 0.0)
-    found = [stop_coordinate(loaded.mechanism, stop).value(state) for stop in stops]
-    return np.array([np.broadcast_to(x, len(places)) for x in found]).reshape(len(stops), len(places)).T
+    return coordinate_values(loaded, [stop_coordinate(loaded.mechanism, stop) for stop in stops], places)
 
 
 def stop_pushes(loaded: LoadedMechanism, places: Array) -> Array:
@@ -358,19 +354,13 @@ def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
 
 def _distinct(loaded: LoadedMechanism, places: Array) -> Array:
     """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first."""
+    if not len(places):
+        return places
     begin = loaded.start
-    repeats = repeats_with_position(loaded)
-    if repeats:
-        turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
-        places = np.where(loaded.angles, places - turns, places)
-
-    def apart(one: Array) -> Array:
-        if repeats:
-            return same_position(loaded, places, one)
-        return np.asarray(np.max(np.abs((places - one) / loaded.units), axis=1))
-
+    turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
+    places = np.where(uncounted_angles(loaded), places - turns, places)
     kept: list[int] = []
-    for k in np.argsort(apart(begin), kind="stable") if len(places) else ():
-        if not kept or np.min(apart(places[k])[kept]) > SAME:
+    for k in np.argsort(position_distance(loaded, places, begin), kind="stable"):
+        if not kept or np.min(position_distance(loaded, places[kept], places[k])) > SAME:
             kept.append(int(k))
     return np.asarray(places[kept])

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.equilibria.configuration_curve import repeats_with_position, same_position
+from centrode.dynamics.equilibria.configuration_curve import position_distance, same_position
 from centrode.dynamics.equilibria.equilibrium_search import (
     SAME,
     Equilibria,
@@ -338,16 +338,10 @@ def _first_of_same(loaded: LoadedMechanism, places: Array) -> Array:
     """Places without repetitions."""
     kept: list[Array] = []
     for place in places:
-        if not any(_apart(loaded, place, other) < SAME for other in kept):
+        if not kept or np.min(position_distance(loaded, np.array(kept), place)) >= SAME:
             kept.append(place)
     return np.array(kept).reshape(len(kept), loaded.size)
 
 
-def _apart(loaded: LoadedMechanism, place: Array, other: Array) -> float:
-    if repeats_with_position(loaded):
-        return float(same_position(loaded, place[None], other)[0])
-    return float(np.max(np.abs((place - other) / loaded.units)))
-
-
 def _is_same(loaded: LoadedMechanism, one: RestingEquilibrium, other: RestingEquilibrium) -> bool:
-    return _apart(loaded, one.place, other.place) < SAME
+    return bool(position_distance(loaded, one.place[None], other.place)[0] < SAME)
