@@ -300,10 +300,23 @@ def _residuals(run: xr.Dataset) -> Text:
     place, speed = (
         float(np.max(run[name].values, initial=0.0)) for name in ("residual", "velocity_residual")
     )
+    within_place, within_speed = Number(place, digits=".1e"), Number(speed, "1/s", ".1e")
+    if not place and not speed:
+        return Sentence("kept exactly")
+    if not place:
+        return Sentence(
+            "kept exactly in positions and within {speed} in velocities, of the greatest length",
+            speed=within_speed,
+        )
+    if not speed:
+        return Sentence(
+            "kept within {place} in positions, of the greatest length, and exactly in velocities",
+            place=within_place,
+        )
     return Sentence(
         "kept within {place} in positions and {speed} in velocities, of the greatest length",
-        place=Number(place, digits=".1e"),
-        speed=Number(speed, "1/s", ".1e"),
+        place=within_place,
+        speed=within_speed,
     )
 
 
