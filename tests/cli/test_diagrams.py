@@ -118,7 +118,7 @@ def test_where_the_mechanism_cannot_be_drawn(
 def test_a_plan(centrode: Centrode, folder: Path) -> None:
     done = centrode("plan", "six-bar-press", "--positions", "24", "--dark")
     assert done.code == 0, done
-    assert done.rows["positions"] == "24, 24 of them reached"
+    assert done.rows["positions"] == "24, all reached"
     assert done.rows["position 0"].startswith("extreme position of H at ")
     names = sorted(file.name for file in (folder / "six-bar-press-plan").iterdir())
     assert names == ["plan.png", "plan.svg", "positions.csv"]

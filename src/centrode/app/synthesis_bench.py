@@ -26,6 +26,7 @@ from centrode.sheets.texts import Number, Text
 from centrode.synthesis.answers import Answer, SynthesisResults
 from centrode.synthesis.requests import SYNTHESES
 from centrode.synthesis.synthesise import synthesise
+from centrode.views.synthesis import error_shown
 
 WORDS: Mapping[str, str] = {
     "title": mark("Synthesis"),
@@ -178,8 +179,8 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
     facts = []
     if kind != "strokes":
         facts += [
-            ["error", words(Number(answer.error, unit, digits=".3g"))],
-            ["greatest", words(Number(answer.greatest, unit, digits=".3g"))],
+            ["error", words(Number(error_shown(found, answer.error), unit, digits=".3g"))],
+            ["greatest", words(Number(error_shown(found, answer.greatest), unit, digits=".3g"))],
         ]
     facts += [
         [name, words(Number(value, its, digits=".4g"))] for name, (value, its) in answer.numbers.items()

@@ -26,6 +26,7 @@ from centrode.sheets.texts import (
     Part,
     Place,
     Sentence,
+    Setting,
     Slanted,
     Symbol,
     Text,
@@ -91,6 +92,8 @@ class Spelling(ABC):
                 return self.place(
                     [Number(value, unit, digits, unit_hidden=True) for value in coordinates], unit
                 )
+            case Setting():
+                return self.setting(text)
             case Indexed():
                 return self.with_index(text)
             case Part(part):
@@ -127,6 +130,10 @@ class Spelling(ABC):
     @abstractmethod
     def expression(self, expression: Expression) -> str:
         """A piece of mathematics."""
+
+    def setting(self, setting: Setting) -> str:
+        """A line of a description with its table: pages and documents have no options."""
+        return _("{line} under [{table}]").format(line=setting.line, table=setting.table)
 
     def unit(self, unit: str) -> str:
         """A unit as readers of the language print it; nothing for a plain number."""
@@ -215,6 +222,11 @@ class PlainSpelling(Spelling):
         label = self.label_of(shown_as(unit, self.display)[1])
         return f"({', '.join(map(self.number, coordinates))}) {label}".rstrip()
 
+    def setting(self, setting: Setting) -> str:
+        """A line of a description with its table, or the option."""
+        under = super().setting(setting)
+        return _("{line}, or the option {option}").format(line=under, option=setting.option)
+
     def part(self, text: str) -> str:
         """What belongs to the entry above it, indented."""
         return f"  {text}"
@@ -248,6 +260,10 @@ class DataSpelling(PlainSpelling):
 
 class PrintSpelling(PlainSpelling):
     """Plain text beside drawings, with units as books print them."""
+
+    def setting(self, setting: Setting) -> str:
+        """A line of a description with its table: no command is at hand."""
+        return Spelling.setting(self, setting)
 
     def unit(self, unit: str) -> str:
         """A unit as books print it."""

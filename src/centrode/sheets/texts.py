@@ -190,6 +190,24 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """What to write into a description; a terminal names its own option beside it.
+
+    Attributes
+    ----------
+    line : 'range = "reachable"'
+    table : str
+        Under which it stands: "study".
+    option : str
+        Of the command, with its value: "--range reachable".
+    """
+
+    line: str
+    table: str
+    option: str
+
+
+@dataclass(frozen=True)
 class Indexed:
     """A letter with numbers of bodies as its index: P20 is the centre of bodies 2 and 0."""
 
@@ -231,7 +249,7 @@ Leaf: TypeAlias = (
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"
-    " | Expression | Unit | Part | Place | Indexed | VectorNotation | Slanted | SymbolicLeaf"
+    " | Expression | Unit | Part | Place | Setting | Indexed | VectorNotation | Slanted | SymbolicLeaf"
 )
 
 NOTHING = Joined(())

@@ -9,7 +9,7 @@ import numpy as np
 from centrode.errors import STATUSES_NOT_REACHED
 from centrode.sheets.plots import EventKind
 from centrode.sheets.sheet import Column, Fact, Failure, Sheet, Table
-from centrode.sheets.texts import Counted, Joined, Name, Number, Sentence, Text
+from centrode.sheets.texts import Counted, Joined, Name, Number, Sentence, Setting, Text
 from centrode.views.abscissa import motion_abscissa, reached_part
 from centrode.views.instants import place_number
 
@@ -141,6 +141,6 @@ def _repair(mechanism: Mechanism) -> Sentence:
             "choose a range between the limits of the drive, or change a dimension as centrode rotatability proposes"
         )
     return Sentence(
-        'choose the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change a dimension as centrode rotatability proposes"
+        "choose the range between the limits ({setting}), or change a dimension as centrode rotatability proposes",
+        setting=Setting('range = "reachable"', "study", "--range reachable"),
     )

@@ -383,6 +383,8 @@ def _checks(results: MotionResults) -> Iterator[Block]:
             value=Number(residual, digits=".1e"),
             constraint=Name(results.worst_constraint),
         )
+        if not residual:
+            closes = Sentence("All constraints hold exactly at every sample that is reached.")
         yield Check(closes, residual, 1.0, CLOSED)
     for check in rigid_body_checks(results.mechanism, results.motion):
         yield Check(_identity(check), check.difference, check.size, check.bound)

@@ -81,6 +81,10 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = NDArray[np.float64]
 
+FINER = 8
+"""Points of a phase portrait in place of one sample, where the curve bends between samples."""
+SEEN = 1e-3
+"""Share of a picture's side that a chord may be beside its curve."""
 PORTRAIT, PORTRAITS = "simulation-phase-", 6
 """Names of phase portraits begin so; and how many there are at most."""
 MARGIN = 0.04
@@ -299,10 +303,23 @@ def _residuals(run: xr.Dataset) -> Text:
     place, speed = (
         float(np.max(run[name].values, initial=0.0)) for name in ("residual", "velocity_residual")
     )
+    within_place, within_speed = Number(place, digits=".1e"), Number(speed, "1/s", ".1e")
+    if not place and not speed:
+        return Sentence("kept exactly")
+    if not place:
+        return Sentence(
+            "kept exactly in positions and within {speed} in velocities, of the greatest length",
+            speed=within_speed,
+        )
+    if not speed:
+        return Sentence(
+            "kept within {place} in positions, of the greatest length, and exactly in velocities",
+            place=within_place,
+        )
     return Sentence(
         "kept within {place} in positions and {speed} in velocities, of the greatest length",
-        place=Number(place, digits=".1e"),
-        speed=Number(speed, "1/s", ".1e"),
+        place=within_place,
+        speed=within_speed,
     )
 
 
@@ -427,7 +444,11 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
     coordinates = _Coordinates(run)
     number = coordinates.names.index(name)
     unit = coordinates.units[number]
-    values, speeds = coordinates.course(name, 0), coordinates.course(name, 1)
+    values, speeds = _between_samples(
+        run["time"].values,
+        [coordinates.course(name, order) for order in range(3)],
+        run["occasion_time"].values,
+    )
     label = AxisLabel(Name(name), Symbol("q"), unit)
     panel = CurvePanel(
         AxisLabel(symbol=Symbol("q̇"), unit=f"{unit}/s"),
@@ -441,6 +462,39 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
     ends = (float(np.min(values)) - margin, float(np.max(values)) + margin) if margin else None
     abscissa = replace(over_samples(label, values), ends=ends)
     return Plot(Sentence("Phase portrait of {name}", name=Name(name)), title, abscissa, ((panel,),))
+
+
+def _between_samples(time: Array, course: Sequence[Array], occasions: Array) -> tuple[Array, Array]:
+    """Values and speeds (n) of a coordinate at its samples, and between them where a chord would be seen.
+
+    Samples follow the time that is simulated, and an oscillation may have only a dozen in each of its periods. Cubics
+    with the slopes of both ends lead from sample to sample; not over an occasion, at which a speed or an acceleration
+    jumps.
+    """
+    values, speeds, accelerations = course
+    step = np.diff(time)
+    share = np.linspace(0.0, 1.0, FINER, endpoint=False)
+    weights = np.array(
+        [
+            (1.0 + 2.0 * share) * (1.0 - share) ** 2,
+            share * (1.0 - share) ** 2,
+            share**2 * (3.0 - 2.0 * share),
+            share**2 * (share - 1.0),
+        ]
+    )
+    curves, bent = [], np.zeros(len(step), dtype=bool)
+    for numbers, slopes in ((values, speeds), (speeds, accelerations)):
+        ends = np.array([numbers[:-1], slopes[:-1] * step, numbers[1:], slopes[1:] * step])
+        curve = ends.T @ weights
+        chord = ends[0][:, None] + np.outer(ends[2] - ends[0], share)
+        bent |= np.max(np.abs(curve - chord), axis=1) > SEEN * np.ptp(numbers)
+        curves.append(curve)
+    jumps = np.searchsorted(occasions, time[:-1], "left") < np.searchsorted(occasions, time[1:], "right")
+    shown = np.zeros((len(step), FINER), dtype=bool)
+    shown[:, 0] = True
+    shown[bent & ~jumps] = True
+    places, rates = (np.append(curve[shown], end[-1]) for curve, end in zip(curves, course[:2], strict=True))
+    return places, rates
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:

@@ -39,9 +39,8 @@ def _facts(plan: PositionPlan) -> list[Fact]:
         return place_number(value, parameter.instant.unit)
 
     reached = int((plan.positions["status"].values == Status.OK).sum())
-    counts = {"count": Number(len(values), digits="d"), "reached": Number(reached, digits="d")}
     first = Sentence("position {number}", number=Number(0, digits="d"))
-    facts = [Fact(Sentence("positions"), Sentence("{count}, {reached} of them reached", **counts))]
+    facts = [Fact(Sentence("positions"), _reached(len(values), reached))]
     if plan.link:
         at_rest = Sentence(
             "extreme position of {link} at {value}", link=Name(plan.link), value=shown(plan.zero)
@@ -57,6 +56,15 @@ def _facts(plan: PositionPlan) -> list[Fact]:
     facts.append(Fact(Sentence("step"), shown(float(step))))
     ends = Sentence("{first} to {last}", first=shown(float(values[0])), last=shown(float(values[-1])))
     return [*facts, Fact(Sentence("range"), Sentence("a full turn") if plan.closed else ends)]
+
+
+def _reached(positions: int, reached: int) -> Text:
+    count = Number(positions, digits="d")
+    if reached == positions:
+        return Sentence("{count}, all reached", count=count)
+    if not reached:
+        return Sentence("{count}, none reached", count=count)
+    return Sentence("{count}, {reached} of them reached", count=count, reached=Number(reached, digits="d"))
 
 
 def _page(plan: PositionPlan) -> PositionsPage:

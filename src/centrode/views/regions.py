@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from centrode.errors import Status
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AreaPath, AxisLabel
 from centrode.sheets.sheet import Column, Fact, Sheet, Table
-from centrode.sheets.texts import Joined, Name, Number, Sentence, Title
+from centrode.sheets.texts import Joined, Name, Number, Sentence, Text, Title
 from centrode.views.abscissa import drive_label
 from centrode.views.columns import counted_statuses
 from centrode.views.instants import place_number
@@ -52,12 +52,20 @@ def _facts(region: xarray.Dataset) -> Iterator[Fact]:
     yield Fact(
         Sentence("grid nodes"), Joined((Number(status.size, digits="d"), counted_statuses(status)), ": ")
     )
-    around = Sentence(
-        "{n}, {bounds} of them around the region",
-        n=Number(region.sizes["border"], digits="d"),
-        bounds=Number(int(region["border_reached"].values.sum()), digits="d"),
-    )
-    yield Fact(Sentence("limits on grid lines"), around)
+    yield Fact(Sentence("limits on grid lines"), _limits(region))
+
+
+def _limits(region: xarray.Dataset) -> Text:
+    """How many limits there are on grid lines, and how many of them bound the region."""
+    count, around = region.sizes["border"], int(region["border_reached"].values.sum())
+    n = Number(count, digits="d")
+    if not count:
+        return Sentence("none")
+    if not around:
+        return Sentence("{n}, none around the region", n=n)
+    if around == count:
+        return Sentence("{n}, all around the region", n=n)
+    return Sentence("{n}, {bounds} of them around the region", n=n, bounds=Number(around, digits="d"))
 
 
 def _unit(region: xarray.Dataset, dimension: str) -> str:

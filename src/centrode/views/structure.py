@@ -95,7 +95,9 @@ def facts(checked: MechanismCheck) -> Iterator[Fact]:
         "closes within {residual} of the greatest length",
         residual=Number(checked.initial_residual, digits=".1e"),
     )
-    yield Fact(Sentence("initial position"), closes)
+    yield Fact(
+        Sentence("initial position"), closes if checked.initial_residual else Sentence("closes exactly")
+    )
 
 
 def _chebyshev(count: Count) -> Text:
@@ -237,6 +239,8 @@ def _groups(checked: MechanismCheck) -> Iterator[Block]:
         "The initial position closes within {residual} of the greatest length.",
         residual=Number(checked.initial_residual, digits=".1e"),
     )
+    if not checked.initial_residual:
+        closes = Sentence("The initial position closes exactly.")
     yield Check(closes, checked.initial_residual, 1.0, CLOSES)
 
 

@@ -25,6 +25,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Counted, Name, Number, Sentence, Symbol, Text, Title
+from centrode.views.rounding import ROUNDING
 from centrode.views.synthesis_chapter import synthesis_chapter
 
 if TYPE_CHECKING:
@@ -80,6 +81,19 @@ def _on_sphere(results: SynthesisResults) -> bool:
     return results.mechanism.space == "sphere"
 
 
+def error_shown(results: SynthesisResults, error: float) -> float:
+    """An error, or zero where it is no more than rounding of what it is an error of: of lengths, or of a radian.
+
+    Targets that are met exactly would be told to be missed by what the last digits of the places are.
+    """
+    if _error_unit(results) == "rad":
+        size = 1.0
+    else:
+        places = [*results.targets, *results.answers[0].met]
+        size = max((abs(one) for one in places if np.isfinite(one)), default=0.0)
+    return 0.0 if abs(error) < ROUNDING * size else error
+
+
 def _facts(results: SynthesisResults) -> Iterator[Fact]:
     wanted, best = results.task.synthesis, results.answers[0]
     yield Fact(Sentence("wanted"), KINDS[wanted.kind])
@@ -91,13 +105,19 @@ def _facts(results: SynthesisResults) -> Iterator[Fact]:
         yield Fact(Sentence("linkages examined"), Number(results.examined, digits="d"))
     yield Fact(Sentence("answers"), Number(len(results.answers), digits="d"))
     unit = _error_unit(results)
+
+    def error(value: float) -> Number:
+        return Number(error_shown(results, value), unit, digits=".4g")
+
     if wanted.kind != "strokes":
-        yield Fact(Sentence("root mean square error of the best"), Number(best.error, unit, digits=".4g"))
-        yield Fact(Sentence("greatest error of the best"), Number(best.greatest, unit, digits=".4g"))
+        yield Fact(Sentence("root mean square error of the best"), error(best.error))
+        yield Fact(Sentence("greatest error of the best"), error(best.greatest))
     if wanted.kind == "path":
         yield Fact(
             Sentence("sum of squared errors of the best"),
-            Number(best.sum_of_squares, f"{unit}^2", digits=".6g"),
+            Number(
+                best.sum_of_squares if error_shown(results, best.greatest) else 0.0, f"{unit}^2", digits=".6g"
+            ),
         )
     if math.isfinite(best.transmission):
         yield Fact(Sentence("least transmission angle of the best"), Number(best.transmission, "rad"))
@@ -132,10 +152,15 @@ def _table(results: SynthesisResults) -> Table:
     columns = [Column("answer", count.astype(float), head=Sentence("answer"), whole=True)]
     if results.task.synthesis.kind != "strokes":
         columns += [
-            Column("error", np.array([one.error for one in answers]), unit, head=Sentence("r.m.s. error")),
+            Column(
+                "error",
+                np.array([error_shown(results, one.error) for one in answers]),
+                unit,
+                head=Sentence("r.m.s. error"),
+            ),
             Column(
                 "greatest_error",
-                np.array([one.greatest for one in answers]),
+                np.array([error_shown(results, one.greatest) for one in answers]),
                 unit,
                 head=Sentence("greatest error"),
             ),
