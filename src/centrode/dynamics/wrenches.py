@@ -89,7 +89,9 @@ def couple(link: str, moment: Moment) -> Wrench:
 
 def plus(summed: Number, number: Number) -> Number:
     """A sum with one number more; a plain zero, of which forces of hinges are full, costs nothing."""
-    return summed if _is_zero(number) else summed + number
+    if _is_zero(number):
+        return summed
+    return number if _is_zero(summed) else summed + number
 
 
 @dataclass(frozen=True)

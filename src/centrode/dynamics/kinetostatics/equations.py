@@ -647,6 +647,11 @@ def _inverse_of_block(matrix: Rows, known: Mask) -> tuple[Rows, Mask]:
     if len(matrix) == 1:
         pivot = np.asarray(matrix[0][0])
         return [[1.0 / pivot]], pivot != 0.0
+    if len(matrix) == 2:
+        # what dyads leave, in a tenth of the time of a general inverse
+        (a, b), (c, d) = matrix
+        determinant = np.asarray(a * d - b * c)
+        return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]], determinant != 0.0
     size = len(matrix)
     stacked = np.empty((*known.shape, size, size))
     for row, numbers in enumerate(matrix):

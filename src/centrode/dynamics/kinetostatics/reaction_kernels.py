@@ -282,7 +282,7 @@ class ReactionKernels:
         matrix = dict(zip(self.places, found[MATRIX][:, None], strict=True))
         scheme, shape = self.scheme, (1, len(pace.acceleration))
         inverse = inverse_of(matrix, scheme.size, len(scheme.unknowns), shape)
-        solution = inverse.times(-found[RIGHT][:, None])[:, 0]
+        solution = inverse.times(list(-found[RIGHT][:, None]))[:, 0]
         made = self.results.run(replace(known, solution=solution).rows(self.results.inputs))
         balances = {name: (made.pop(f"{name} 0")[0], made.pop(f"{name} 1")[0]) for name in BALANCES}
         parts = {name: np.ascontiguousarray(np.moveaxis(array, -1, 0)) for name, array in made.items()}
