@@ -10,7 +10,15 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
-from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, Scheme, inverse_of
+from centrode.dynamics.kinetostatics.equations import (
+    EPSILON,
+    ForceSystem,
+    InPlane,
+    Inverse,
+    Kinetostatics,
+    blocks_of,
+    inverse_of,
+)
 from centrode.dynamics.kinetostatics.reactions import ReactionNumbers, checks_of, find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import DriveMotion, State
@@ -118,45 +126,87 @@ def test_inverses_say_what_is_singular() -> None:
     whole, flat = np.diag([1.0, 2.0]), np.array([[1.0, 2.0], [2.0, 4.0]])
     near = flat + np.diag([0.0, 4 * EPSILON])
     unknown = np.array([[np.nan, 0.0], [0.0, 1.0]])
-    found = inverse_of(np.stack([whole, flat, near, unknown]))
+    found = inverse_at(np.stack([whole, flat, near, unknown], axis=-1))
     assert found.condition[0] == 2.0
     assert found.condition[1] == np.inf
     assert np.isnan(found.condition[3])
     assert found.useless.tolist() == [False, True, True, False]
-    assert np.isnan(found.times(np.ones((2, 4)))[:, [1, 3]]).all()
-    helped = inverse_of(np.stack([np.column_stack([flat, [0.0, 1.0]])]))
-    assert not helped.useless[0]
-    right = np.array([[1.0], [5.0]])
-    assert np.allclose(helped.matrix[0] @ helped.times(right), right)
+    assert np.isnan(found.times([1.0, 1.0])[:, [1, 3]]).all()
+    # a column behind the others helps where these are singular, and nowhere else
+    wide = np.stack([np.column_stack([square, [0.0, 1.0]]) for square in (whole, flat)], axis=-1)
+    helped = inverse_at(wide)
+    assert not helped.useless.any()
+    solution = helped.times([1.0, 5.0])
+    assert np.allclose(np.einsum("ijk,jk->ik", wide, solution), [[1.0, 1.0], [5.0, 5.0]])
+    assert solution[2, 0] == 0.0
+    assert np.allclose(solution[:, 1], np.linalg.pinv(wide[..., 1]) @ [1.0, 5.0])
+
+
+def inverse_at(matrix: np.ndarray, filled: np.ndarray | None = None) -> Inverse:
+    """Inverses of matrices (n, m, k) with numbers in the filled places."""
+    filled = np.ones(matrix.shape[:2], dtype=bool) if filled is None else filled
+    entries = {(int(row), int(column)): matrix[row, column] for row, column in np.argwhere(filled)}
+    return inverse_of(entries, *matrix.shape[:2], matrix.shape[2:])
+
+
+def whole_inverses(found: Inverse) -> np.ndarray:
+    """The inverses (k, m, n) of n equations, column by column."""
+    return np.stack([found.times(list(side)).T for side in np.eye(found.size)], axis=-1)
+
+
+def places_of(filled: np.ndarray) -> frozenset[tuple[int, int]]:
+    return frozenset((int(row), int(column)) for row, column in np.argwhere(filled))
 
 
 def test_an_inverse_by_blocks_is_that_of_the_whole() -> None:
+    """Blocks that random orders of equations and unknowns hide are found again, and solved one after the other."""
     random = np.random.default_rng(25)
-    blocks = (3, 6, 2)
-    block = np.repeat(np.arange(len(blocks)), blocks)
-    matrix = np.where(block[:, None] < block, 0.0, random.normal(size=(50, 11, 11)))
-    whole, parts = inverse_of(matrix), inverse_of(matrix, blocks)
-    off = np.abs(parts.inverse - whole.inverse).max(axis=(1, 2)) / np.abs(whole.inverse).max(axis=(1, 2))
-    assert (off < 64 * EPSILON * whole.condition).all()
-    assert np.allclose(parts.condition, whole.condition, rtol=1e-6)
+    sizes = (3, 1, 6, 1, 2)
+    block = np.repeat(np.arange(len(sizes)), sizes)
+    before = (block[:, None] > block) & (random.random((13, 13)) < 0.4)
+    rows, columns = random.permutation(13), random.permutation(13)
+    filled = ((block[:, None] == block) | before)[rows][:, columns]
+    matrix = np.where(filled[..., None], random.normal(size=(13, 13, 50)), 0.0)
+    blocks = blocks_of(13, places_of(filled))
+    assert sorted(len(one.rows) for one in blocks) == [1, 1, 2, 3, 6]
+    stacked = np.moveaxis(matrix, -1, 0)
+    whole = np.linalg.inv(stacked)
+    condition = np.abs(stacked).sum(axis=2).max(axis=1) * np.abs(whole).sum(axis=2).max(axis=1)
+    parts = inverse_at(matrix, filled)
+    off = np.abs(whole_inverses(parts) - whole).max(axis=(1, 2)) / np.abs(whole).max(axis=(1, 2))
+    assert (off < 64 * EPSILON * condition).all()
+    assert np.allclose(parts.condition, condition, rtol=1e-6)
     # a singular block makes the whole singular, and nothing of its neighbours in the stack
-    matrix[7, 3:9, 3:9] = 1.0
-    judged = inverse_of(matrix, blocks)
-    assert judged.useless[7]
-    assert np.isnan(judged.inverse[7]).all()
-    assert np.allclose(judged.inverse[8], whole.inverse[8], rtol=1e-10)
+    for one in blocks:
+        flat = matrix.copy()
+        flat[(*np.ix_(one.rows, one.columns), 7)] = 1.0 if len(one.rows) > 1 else 0.0
+        judged = inverse_at(flat, filled)
+        assert np.isinf(judged.condition).tolist() == [k == 7 for k in range(50)]
+        inverses = whole_inverses(judged)
+        assert np.isnan(inverses[7]).all()
+        assert np.allclose(inverses[8], whole[8], rtol=1e-10)
 
 
-def test_equations_stand_group_by_group() -> None:
-    """Forces are found from the last Assur group to the drive: two dyads and the crank of the press."""
-    scheme = Scheme.of(ready(ct.example("six-bar-press")).structure)
-    assert scheme.blocks == (6, 6, 3)
-    names = [body.name for body in scheme.bodies]
-    assert set(names[:2]) == {"DH", "slider"}
-    assert names[4:] == ["OA"]
-    # a triad hangs together
-    triad = Scheme.of(ready(ct.example("third-class-triad")).structure)
-    assert sorted(triad.blocks) == [3, 12]
+def test_equations_come_apart_into_blocks() -> None:
+    """Of a dyad two moments in two unknowns are left; all other forces follow from one equation each."""
+    for name, sizes in (("six-bar-press", [1] * 13 + [2]), ("third-class-triad", [1] * 9 + [6])):
+        system = _equations(name)
+        blocks = blocks_of(system.scheme.size, frozenset(system.matrix()))
+        assert sorted(len(one.rows) for one in blocks) == sizes
+        known: set[int] = set()
+        for one in blocks:
+            assert {other for others in one.before for other in others} <= known
+            known |= set(one.columns)
+    # without a match of equations and unknowns there is nothing to take apart
+    (one,) = blocks_of(2, frozenset({(0, 0), (0, 1)}))
+    assert one.rows == one.columns == (0, 1)
+
+
+def _equations(name: str) -> Kinetostatics:
+    prepared = ready(ct.Mechanism(**{**parts_of(ct.example(name)), **LOADED}))
+    solved = solve(prepared, requested_grid(prepared, 5, None, None))
+    burden = MassesAndLoads.of(prepared.mechanism)
+    return find(solved, burden, input_motion_of(solved, burden)).forces.system
 
 
 def test_three_cranks_say_what_they_do_not_determine() -> None:

@@ -47,6 +47,9 @@ class Wrench:
     def moment_about(self, place: Vector) -> Moment:
         """Moment of the force about a place, and the couple [N m]."""
         if len(self.force) == 2:
+            if self.at is place:
+                # a force turns nothing about the place where it acts, be it known or not
+                return self.moment
             along, across = self.force
             (x, y), (u, v) = self.at, place
             # plain zeros, of which couples and rows of hinges are full, cost nothing
@@ -86,7 +89,9 @@ def couple(link: str, moment: Moment) -> Wrench:
 
 def plus(summed: Number, number: Number) -> Number:
     """A sum with one number more; a plain zero, of which forces of hinges are full, costs nothing."""
-    return summed if _is_zero(number) else summed + number
+    if _is_zero(number):
+        return summed
+    return number if _is_zero(summed) else summed + number
 
 
 @dataclass(frozen=True)

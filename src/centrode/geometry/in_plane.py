@@ -49,7 +49,7 @@ class Plane:
     def pose_of(self, m: Namespace, attitude: Sequence[Number], local: Vector, at: Vector) -> PlanePose:
         cosine, sine = attitude
         # the origin is not carried along: it follows from the point's place
-        return PlanePose(subtract(at, rotate_vector(local, (cosine, sine))), (cosine, sine))
+        return pose_with_point(local, at, (cosine, sine))
 
     def stretch(self, attitude: Sequence[Number]) -> list[Number]:
         cosine, sine = attitude

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from centrode.kinematics.plan_evaluation import PlanLayout
 from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
+from centrode.numerics.arrays import of_shape
 from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -136,12 +137,13 @@ def _turns_between(cosine: Array, below: Side, next_cosine: Array, next_below: S
 def _on_mesh(x: object, nodes: int) -> Array:
     """Values (lanes, nodes), or (1, nodes) where the lanes agree."""
     values = np.atleast_2d(np.asarray(x.value if isinstance(x, Jet) else x, dtype=np.float64))
-    return np.broadcast_to(values, (values.shape[0], nodes))
+    return of_shape(values, (values.shape[0], nodes))
 
 
 def _fill_gaps(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     """Rotors (lanes, nodes) with gaps filled by the last known one on the way from the start, in both directions."""
-    cosine, sine = np.broadcast_arrays(cosine, sine)
+    shape = np.broadcast_shapes(cosine.shape, sine.shape)
+    cosine, sine = of_shape(cosine, shape), of_shape(sine, shape)
     if np.isfinite(cosine.sum() + sine.sum()):
         return cosine, sine
     known = np.isfinite(cosine + sine)

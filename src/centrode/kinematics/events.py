@@ -44,7 +44,7 @@ from centrode.kinematics.plan_evaluation import (
     count_turns,
 )
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.arrays import ARRAYS, of_shape
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding_bounds import ROUNDED, SAFETY, Rounded
@@ -560,14 +560,14 @@ class EventScan:
     def _on_mesh(self, jet: Number) -> tuple[Array, Array]:
         shape = (self.branches.lanes, len(self.mesh))
         if not isinstance(jet, Jet):
-            return np.broadcast_to(jet, shape), np.zeros(shape)
-        return np.broadcast_to(jet.value, shape), np.broadcast_to(jet.derivative(1), shape)
+            return of_shape(jet, shape), np.zeros(shape)
+        return of_shape(jet.value, shape), of_shape(jet.derivative(1), shape)
 
     def _bend_on_mesh(self, jet: Number) -> Array | None:
         """Bound of the second derivative about each node; None where nothing is known of it."""
         shape = (self.branches.lanes, len(self.mesh))
         if isinstance(jet, Bent):
-            return np.broadcast_to(jet.bend, shape)
+            return of_shape(jet.bend, shape)
         return None if isinstance(jet, Jet) else np.zeros(shape)
 
     def _events(self, group: int, value: Array, slope: Array) -> list[RadicandZero]:

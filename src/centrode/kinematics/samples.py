@@ -42,7 +42,7 @@ from centrode.kinematics.plan_evaluation import (
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.locale import _
-from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.arrays import ARRAYS, of_shape
 from centrode.numerics.jets import Jet
 from centrode.numerics.rooms import GivenRoom
 from centrode.numerics.rounding_bounds import SAFETY
@@ -124,7 +124,7 @@ class SampleJudging(Smooth):
         # a radicand that does not move has derivatives that are zero: groups behind need jets
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
-        value = np.broadcast_to(radicand.value, self.shape)
+        value = of_shape(radicand.value, self.shape)
         below = self._at_zero(group, value)
         if below is None:
             # without power series a negative radicand opens at once; with one, `after` may take that back
@@ -454,7 +454,8 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
             relative = size / (1.0 if angular else kinematics.numbers.scale)
             # maximum lets NaN win: a constraint without a value leaves the sample without a residual
             worst = np.maximum(worst, relative)
-            greatest[kept] = float(np.nanmax(relative, initial=0.0))
+            # fmax lets it lose
+            greatest[kept] = float(np.fmax.reduce(relative, axis=None, initial=0.0))
     if samples.status.any():
         worst[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
     return worst, max(greatest, key=greatest.__getitem__)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 Number = Any
 """Anything with `+ - * /` that a namespace below has functions for: array, jet, bounded number, symbol."""
@@ -68,3 +69,8 @@ class Arrays:
 
 
 ARRAYS = Arrays()
+
+
+def of_shape(number: Number, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """A number as an array of a shape, to be read: itself where it has that shape, as most have."""
+    return number if getattr(number, "shape", None) == shape else np.broadcast_to(number, shape)

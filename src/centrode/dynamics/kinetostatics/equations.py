@@ -9,11 +9,12 @@ of that balance, along the sphere as in the plane.
 from __future__ import annotations
 
 import functools
+import operator
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -67,14 +68,11 @@ class Scheme:
 
     Attributes
     ----------
-    solved : as many unknowns as there are equations, those of a group of `links` behind those of the groups before
+    solved : as many unknowns as there are equations
     hosts : (point, axis) -> unknown that follows from the pin's balance
     loose : (point, axis) of points without a link to bear them: they keep their own equations
     repeating : unknowns of the equations that repeat others; nothing tells how great they are
     bodies : links and points without one, in the order of their equations
-    blocks : numbers of equations of the groups that are solved one after the other
-        The equations of a group speak of its own unknowns and of those of groups before it, as an Assur group hangs
-        on others that it loads.
     """
 
     structure: Structure
@@ -83,7 +81,6 @@ class Scheme:
     loose: tuple[Axis, ...]
     repeating: tuple[Unknown, ...]
     bodies: tuple[Entity, ...]
-    blocks: tuple[int, ...]
 
     @classmethod
     def of(cls, structure: Structure) -> Scheme:
@@ -102,15 +99,7 @@ class Scheme:
         solved = tuple(unknown for unknown in kept if unknown not in taken)
         bodies = [Entity("link", link) for link in structure.mechanism.links]
         bodies += [Entity("point", point) for point in dict.fromkeys(point for point, _axis in loose)]
-        groups = _groups_in_order(structure.mechanism, solved, hosts, bodies)
-        if groups is None:
-            # there are not as many unknowns as equations of some bodies: all are solved at once
-            groups = [(bodies, list(solved))]
-        return cls(
-            structure, tuple(unknown for _own, unknowns in groups for unknown in unknowns), hosts, loose,
-            structure.repeating, tuple(body for own, _unknowns in groups for body in own),
-            tuple(sum(map(_equations_of, own)) for own, _unknowns in groups),
-        )  # fmt: skip
+        return cls(structure, solved, hosts, loose, structure.repeating, tuple(bodies))
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -120,12 +109,7 @@ class Scheme:
     @property
     def size(self) -> int:
         """Number of equations."""
-        return sum(self.blocks)
-
-    def blocks_of(self, filled: Mask) -> tuple[int, ...]:
-        """The blocks, where a matrix with numbers in the `filled` places (equations, unknowns) has them; else none."""
-        block = np.repeat(np.arange(len(self.blocks)), self.blocks)
-        return () if filled[:, : self.size][block[:, None] < block].any() else self.blocks
+        return sum(map(_equations_of, self.bodies))
 
     @cached_property
     def first_rows(self) -> dict[Entity, int]:
@@ -136,40 +120,6 @@ class Scheme:
 
 def _equations_of(body: Entity) -> int:
     return 3 if body.kind == "link" else 2
-
-
-def _groups_in_order(
-    mechanism: Mechanism, solved: Sequence[Unknown], hosts: Mapping[Axis, Unknown], bodies: Sequence[Entity]
-) -> list[tuple[list[Entity], list[Unknown]]] | None:
-    """Bodies whose equations are solved together, with their unknowns, those that they load before them.
-
-    None where equations and unknowns do not match.
-    """
-    known = set(bodies)
-    borne = {point: Entity("link", tie.link) for (point, _row), (tie, _k) in hosts.items()}  # type: ignore[attr-defined]
-    touched: dict[Unknown, list[Entity]] = {}
-    for unknown in solved:
-        link = _host_link(unknown[0], mechanism)
-        tied = [*unknown[0].bodies, *([] if link is None else [Entity("link", link)])]
-        named = [borne.get(body.name, body) if body.kind == "point" else body for body in tied]
-        touched[unknown] = [body for body in dict.fromkeys(named) if body in known]
-    slots = {
-        unknown: [(body, k) for body in own for k in range(_equations_of(body))]
-        for unknown, own in touched.items()
-    }
-    owners = match(slots)
-    if len(owners) < len(solved) or len(owners) < sum(map(_equations_of, bodies)):
-        return None
-    owner = {unknown: body for (body, _k), unknown in owners.items()}
-    depends: dict[Entity, list[Entity]] = {body: [] for body in bodies}
-    for unknown, own in touched.items():
-        for body in own:
-            if body != owner[unknown]:
-                depends[body].append(owner[unknown])
-    return [
-        (component, [unknown for unknown in solved if owner[unknown] in component])
-        for component in in_order(strong_components(depends), depends)
-    ]
 
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
@@ -511,31 +461,102 @@ def _host_link(constraint: Constraint, mechanism: Mechanism) -> str | None:
 # Matrices inverted at many positions, with what rounding makes of each.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Matrix: TypeAlias = Mapping[tuple[int, int], Number]
+"""(Equation, unknown) -> number at every position, of those that are not plainly zero."""
+Rows: TypeAlias = Sequence[Sequence[Number]]
 EPSILON = 2.0**-52
+
+
+class Block(NamedTuple):
+    """Equations that are solved together, once the unknowns before them are known.
+
+    Attributes
+    ----------
+    rows, columns : the equations and their unknowns, as many
+    before : of each equation the unknowns before that it speaks of
+    """
+
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+    before: tuple[tuple[int, ...], ...]
+
+
+# by the places alone: mechanisms of one structure have these in common
+@functools.lru_cache(maxsize=64)
+def blocks_of(size: int, places: frozenset[tuple[int, int]]) -> tuple[Block, ...]:
+    """The least blocks of equations that matrices with numbers in these places come apart into.
+
+    An Assur group hangs on others that it loads, and within a group most forces follow from one equation each: of a
+    dyad two moments in two unknowns are left. All is one block where equations and unknowns do not match.
+    """
+    rows_of: dict[int, list[int]] = {column: [] for column in range(size)}
+    columns_of: dict[int, list[int]] = {row: [] for row in range(size)}
+    for row, column in sorted(places):
+        rows_of[column].append(row)
+        columns_of[row].append(column)
+    owners = match(rows_of)
+    if len(owners) < size:
+        everything = tuple(range(size))
+        return (Block(everything, everything, ((),) * size),)
+    row_of = {column: row for row, column in owners.items()}
+    needs = {column: columns_of[row_of[column]] for column in range(size)}
+    blocks = []
+    for columns in in_order(strong_components(needs), needs):
+        before = [tuple(other for other in needs[column] if other not in columns) for column in columns]
+        blocks.append(Block(tuple(row_of[column] for column in columns), tuple(columns), tuple(before)))
+    return tuple(blocks)
 
 
 @dataclass(frozen=True)
 class Inverse:
-    """Matrices (..., n, m), m at least n, and for each some inverse (..., m, n); NaN where there is none.
+    """Inverses of matrices of n equations in m unknowns, m at least n, at every position.
 
     Attributes
     ----------
+    size, width : n and m
+    of_blocks : inverse of each block of the first n unknowns
     condition : (...)
         Condition number; infinite where a matrix is singular, NaN where the matrix itself is not known.
+    pseudo : positions (...) where the first unknowns do not do, and the inverses (k, m, n) of whole matrices there
     """
 
-    matrix: Array
-    inverse: Array
+    matrix: Matrix
+    size: int
+    width: int
+    blocks: tuple[Block, ...]
+    of_blocks: Sequence[Rows]
     condition: Array
+    pseudo: tuple[Mask, Array] | None = None
 
-    def times(self, right: Array) -> Array:
-        """Solutions (m, ...) for right sides (n, ...), with one step of refinement."""
-        asked = np.ascontiguousarray(np.moveaxis(right, 0, -1))[..., None]
-        with np.errstate(invalid="ignore"):
-            solution = self.inverse @ asked
+    def times(self, right: Sequence[Number]) -> Array:
+        """Solutions (m, ...) for n right sides, with one step of refinement; NaN where there is none."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            solution = self._solution(right)
+            left = list(right)
+            for (row, column), value in self.matrix.items():
+                left[row] = left[row] - value * solution[column]
             # one step of refinement takes back what the inverse's own rounding left
-            solution = solution + self.inverse @ (asked - self.matrix @ solution)
-        return np.moveaxis(solution[..., 0], -1, 0)
+            return solution + self._solution(left)
+
+    def _solution(self, right: Sequence[Number]) -> Array:
+        solution = np.zeros((self.width, *self.condition.shape))
+        for block, of_block in zip(self.blocks, self.of_blocks, strict=True):
+            left = []
+            for row, before in zip(block.rows, block.before, strict=True):
+                own = right[row]
+                for column in before:
+                    own = own - self.matrix[row, column] * solution[column]
+                left.append(own)
+            for column, factors in zip(block.columns, of_block, strict=True):
+                solution[column] = _sum_of_products(factors, left)
+        known = np.isfinite(self.condition)
+        if not known.all():
+            solution[:, ~known] = np.nan
+        if self.pseudo is not None:
+            lost, inverse = self.pseudo
+            there = np.array([np.broadcast_to(x, lost.shape)[lost] for x in right])
+            solution[:, lost] = (inverse @ there.T[..., None])[..., 0].T
+        return solution
 
     @property
     def loss(self) -> Array:
@@ -546,7 +567,7 @@ class Inverse:
         once more: its square times the rounding of a sum over a row.
         """
         with np.errstate(over="ignore"):
-            return np.asarray(self.condition**2 * (EPSILON * self.matrix.shape[-2]))
+            return np.asarray(self.condition**2 * (EPSILON * self.size))
 
     @property
     def useless(self) -> Mask:
@@ -555,76 +576,102 @@ class Inverse:
             return np.asarray(self.loss >= 1.0)
 
 
-def inverse_of(matrix: Array, blocks: Sequence[int] = ()) -> Inverse:
-    """Inverses of matrices (..., n, m): of their first n columns, where these are regular.
+def inverse_of(matrix: Matrix, size: int, width: int, shape: tuple[int, ...]) -> Inverse:
+    """Inverses of matrices of so many equations and unknowns at positions (shape): of their first columns.
 
-    Where they are not, the columns behind them may help: then it is the pseudo-inverse of the whole. Singular
-    matrices and those with NaN are no error. `blocks` are the sizes of blocks on the diagonal of the first n columns,
-    right of which these have zeros alone.
+    Where these are singular the columns behind them may help: then it is the pseudo-inverse of the whole. Singular
+    matrices and those with NaN are no error.
     """
-    size, width = matrix.shape[-2:]
     # more columns than equations: those of repeating constraints, used only where the others are singular
-    inverse, condition = _square(matrix[..., :size], blocks or (size,))
+    square = {place: value for place, value in matrix.items() if place[1] < size}
+    found = _inverse_of_square(square, size, shape)
     if width == size:
-        return Inverse(matrix, inverse, condition)
-    wide = np.zeros((*matrix.shape[:-2], width, size))
-    wide[..., :size, :] = inverse
-    candidate = Inverse(matrix, wide, condition)
-    lost = candidate.useless
-    if lost.any():
-        wide[lost], condition[lost] = _pseudo(matrix[lost])
-    return candidate
+        return found
+    found = replace(found, matrix=matrix, width=width)
+    lost = found.useless
+    if not lost.any():
+        return found
+    whole = np.zeros((np.count_nonzero(lost), size, width))
+    for (row, column), value in matrix.items():
+        whole[:, row, column] = np.broadcast_to(value, shape)[lost]
+    inverse, found.condition[lost] = _pseudo(whole)
+    return replace(found, pseudo=(lost, inverse))
 
 
-def _square(matrix: Array, blocks: Sequence[int]) -> tuple[Array, Array]:
-    """Inverses and condition numbers in the norm of the greatest row sum."""
-    norm = _norm(matrix)
-    known = np.isfinite(norm)
+def _inverse_of_square(matrix: Matrix, size: int, shape: tuple[int, ...]) -> Inverse:
+    """Inverse of as many equations as unknowns, block by block, and its condition number."""
+    blocks = blocks_of(size, frozenset(matrix))
+    sizes: list[Number] = [0.0] * size
+    for (row, _column), value in matrix.items():
+        sizes[row] = sizes[row] + abs(value)
+    norm = functools.reduce(np.maximum, sizes, np.zeros(shape))
+    known = regular = np.isfinite(norm)
+    # unknown -> right side -> number of the inverse that is not plainly zero
+    inverse: dict[int, dict[int, Number]] = {}
+    of_blocks: list[Rows] = []
+    of_inverse = np.zeros(shape)
+    with np.errstate(all="ignore"):
+        for rows, columns, before in blocks:
+            own = [[matrix.get((row, column), 0.0) for column in columns] for row in rows]
+            of_block, of_full_rank = _inverse_of_block(own, known)
+            of_blocks.append(of_block)
+            regular = regular & of_full_rank
+            # what each equation is once the unknowns before are put in: numbers that multiply the right sides
+            left: list[dict[int, Number]] = []
+            for row, others in zip(rows, before, strict=True):
+                terms: dict[int, Number] = {row: 1.0}
+                for other in others:
+                    factor = matrix[row, other]
+                    for side, value in inverse[other].items():
+                        terms[side] = terms.get(side, 0.0) - factor * value
+                left.append(terms)
+            sides = list(dict.fromkeys(side for terms in left for side in terms))
+            for column, factors in zip(columns, of_block, strict=True):
+                inverse[column] = {
+                    side: _sum_of_products(factors, [terms.get(side, 0.0) for terms in left])
+                    for side in sides
+                }
+                of_row = functools.reduce(operator.add, map(abs, inverse[column].values()))
+                of_inverse = np.maximum(of_inverse, of_row)
+        # the norm of the greatest row sum: no singular values are needed for a bound
+        condition = np.where(regular, norm * of_inverse, np.where(known, np.inf, np.nan))
+    return Inverse(matrix, size, size, blocks, of_blocks, condition)
+
+
+def _sum_of_products(factors: Sequence[Number], numbers: Sequence[Number]) -> Number:
+    return functools.reduce(operator.add, map(operator.mul, factors, numbers))
+
+
+def _inverse_of_block(matrix: Rows, known: Mask) -> tuple[Rows, Mask]:
+    """Inverses of matrices that are not to be taken apart, and which of them are regular."""
+    if len(matrix) == 1:
+        pivot = np.asarray(matrix[0][0])
+        return [[1.0 / pivot]], pivot != 0.0
+    if len(matrix) == 2:
+        # what dyads leave, in a tenth of the time of a general inverse
+        (a, b), (c, d) = matrix
+        determinant = np.asarray(a * d - b * c)
+        return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]], determinant != 0.0
+    size = len(matrix)
+    stacked = np.empty((*known.shape, size, size))
+    for row, numbers in enumerate(matrix):
+        for column, number in enumerate(numbers):
+            stacked[..., row, column] = number
+    stacked = _where(known, stacked)
     regular = known
     try:
-        inverse: Array = _inverse_by_blocks(_where(regular, matrix), blocks)
+        inverse = np.linalg.inv(stacked)
     except np.linalg.LinAlgError:
-        # a pivot is exactly zero somewhere: there the determinant of a block has no sign, whatever the size of the
-        # others
-        judged = _where(known, matrix)
-        ends = np.cumsum(blocks)
-        for first, end in zip(ends - blocks, ends, strict=True):
-            regular = regular & (np.linalg.slogdet(judged[..., first:end, first:end])[0] != 0.0)
-        inverse = _inverse_by_blocks(_where(regular, matrix), blocks)
-    if not regular.all():
-        inverse = np.where(regular[..., None, None], inverse, np.nan)
-    with np.errstate(invalid="ignore", over="ignore"):
-        # the norm of the greatest row sum: no singular values are needed for a bound
-        condition = norm * _norm(inverse)
-    return inverse, np.where(regular, condition, np.where(known, np.inf, np.nan))
-
-
-def _inverse_by_blocks(matrix: Array, blocks: Sequence[int]) -> Array:
-    """Inverses of matrices (..., n, n) with zeros right of the blocks on their diagonal; LinAlgError as of one."""
-    if len(blocks) == 1:
-        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-    inverse, first = np.zeros(matrix.shape), 0
-    for size in blocks:
-        own, before = slice(first, first + size), slice(first)
-        of_block = inverse[..., own, own] = np.linalg.inv(matrix[..., own, own])
-        if first:
-            # what the unknowns before do to the equations of this block, its own unknowns take back
-            inverse[..., own, before] = -of_block @ (matrix[..., own, before] @ inverse[..., before, before])
-        first += size
-    return inverse
+        # a pivot is exactly zero somewhere: there the determinant has no sign
+        regular = known & (np.linalg.slogdet(stacked)[0] != 0.0)
+        inverse = np.linalg.inv(_where(regular, stacked))
+    # numbers of neighbouring positions side by side, as everywhere else
+    return list(np.ascontiguousarray(np.moveaxis(inverse, (-2, -1), (0, 1)))), regular
 
 
 # an identity in the place of what has no inverse keeps the rest of the stack going
 def _where(regular: Mask, matrix: Array) -> Array:
     return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
-
-
-def _norm(matrix: Array) -> Array:
-    """The greatest row sum of sizes: row by row, as memory for all sizes at once would be fresh at every call."""
-    ones = np.ones(matrix.shape[-1])
-    # one product adds up short rows faster than a sum does
-    sums = (np.abs(matrix[..., row, :]) @ ones for row in range(matrix.shape[-2]))
-    return functools.reduce(np.maximum, sums)
 
 
 def _pseudo(matrix: Array) -> tuple[Array, Array]:
@@ -741,22 +788,23 @@ class Kinetostatics:
     @cached_property
     def inverse(self) -> Inverse:
         """The matrix of the equations, inverted at every position."""
-        scheme, unknowns = self.scheme, self.scheme.unknowns
-        matrix = np.zeros((*self.shape, scheme.size, len(unknowns)))
-        filled = np.zeros(matrix.shape[-2:], dtype=bool)
-        for column, unknown in enumerate(unknowns):
-            self._add(matrix[..., column], self.pulls[unknown], filled[:, column])
+        return inverse_of(self.matrix(), self.scheme.size, len(self.scheme.unknowns), self.shape)
+
+    def matrix(self) -> Matrix:
+        """The matrix of the equations."""
+        matrix: dict[tuple[int, int], Number] = {}
+        for column, unknown in enumerate(self.scheme.unknowns):
             # forces and moments over the greatest length are of one size, so that the condition number means
             # something
-            if self.equilibrium.by_moment(unknown[0]):
-                matrix[..., column] *= self.scale
-        return inverse_of(matrix, scheme.blocks_of(filled))
+            scale = self.scale if self.equilibrium.by_moment(unknown[0]) else None
+            for row, value in self._sums(self.pulls[unknown]).items():
+                matrix[row, column] = value if scale is None else value * scale
+        return matrix
 
-    def right_side(self, outer: Iterable[Wrench]) -> Array:
-        """Forces and moments [N] on the links, as (equations, 1, n)."""
-        right = np.zeros((*self.shape, self.scheme.size))
-        self._add(right, outer)
-        return np.moveaxis(right, -1, 0)
+    def right_side(self, outer: Iterable[Wrench]) -> list[Number]:
+        """Forces and moments [N] on the links, for each equation."""
+        sums = self._sums(outer)
+        return [sums.get(row, 0.0) for row in range(self.scheme.size)]
 
     def forces(self, outer: Sequence[Wrench]) -> ForceSystem:
         """Constraint forces that balance what acts on points and links.
@@ -764,7 +812,7 @@ class Kinetostatics:
         Equations that repeat others bear nothing, except where the others alone are singular: there all together bear
         the least. What nothing determines is one of the many forces that are possible.
         """
-        solved = self.inverse.times(-self.right_side(outer))
+        solved = self.inverse.times([-x for x in self.right_side(outer)])
         multipliers: dict[Unknown, Number] = {}
         for row, unknown in enumerate(self.scheme.unknowns):
             turns = self.equilibrium.by_moment(unknown[0])
@@ -794,14 +842,14 @@ class Kinetostatics:
         pulls = self.pulls[self.scheme.hosts[place]]
         return next(pull.force for pull in pulls if pull.body.kind == "point")
 
-    def _add(self, column: Array, pulls: Iterable[Wrench], filled: Mask | None = None) -> None:
-        """Add what pulls do to each equation (..., equations), and mark which these are; the frame has none."""
+    def _sums(self, pulls: Iterable[Wrench]) -> dict[int, Number]:
+        """What pulls do to each equation that they are in; the frame has none."""
+        sums: dict[int, Number] = {}
         for pull in pulls:
             for row, value in self.entries(pull):
                 if not _is_zero(value):
-                    column[..., row] += value
-                    if filled is not None:
-                        filled[row] = True
+                    sums[row] = sums[row] + value if row in sums else value
+        return sums
 
     def entries(self, pull: Wrench) -> list[tuple[int, Number]]:
         """Equations that a wrench is in, each with what it adds there."""

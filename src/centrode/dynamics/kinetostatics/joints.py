@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.equations import ForceSystem, Inverse, Kinetostatics, Unknown
-from centrode.dynamics.wrenches import Vector, Wrench
+from centrode.dynamics.wrenches import Vector, Wrench, plus
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.numerics.expressions import Node
@@ -89,7 +89,7 @@ def _sum(pulls: Iterable[Wrench], origin: Vector) -> Vector:
     """Sum of forces; of none, nothing."""
     resultant = origin
     for pull in pulls:
-        resultant = tuple(x + y for x, y in zip(resultant, pull.force, strict=True))
+        resultant = tuple(plus(x, y) for x, y in zip(resultant, pull.force, strict=True))
     return resultant
 
 

@@ -34,7 +34,6 @@ from centrode.dynamics.masses import share
 from centrode.dynamics.reduction import NODE_JETS
 from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import Wrench
-from centrode.geometry.plane import is_literal_zero
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
 from centrode.model.kept_values import KeptValues
@@ -168,22 +167,6 @@ class TracedEquations:
         """Wrenches of loads and inertia."""
         return (*self.loads, *(pull for action in self.inertia for pull in action.pulls))
 
-    def matrix(self) -> Nodes:
-        """The matrix of the equations, (equations, unknowns)."""
-        scheme, system = self.system.scheme, self.system
-        matrix = np.full((scheme.size, len(scheme.unknowns)), 0.0, dtype=object)
-        for column, unknown in enumerate(scheme.unknowns):
-            _add(matrix[:, column], system, system.pulls[unknown])
-            if system.equilibrium.by_moment(unknown[0]):
-                matrix[:, column] *= system.scale
-        return matrix
-
-    def right_side(self) -> Nodes:
-        """What acts, (equations,)."""
-        right = np.full(self.system.scheme.size, 0.0, dtype=object)
-        _add(right, self.system, self.outer)
-        return right
-
     def forces(self) -> ForceSystem:
         """The solved equations, with variables for the solution."""
         system, solution = self.system, {}
@@ -195,12 +178,6 @@ class TracedEquations:
 
 def _sum(values: Iterable[Number]) -> Number:
     return functools.reduce(operator.add, values, 0.0)
-
-
-def _add(column: Nodes, system: Kinetostatics, pulls: Iterable[Wrench]) -> None:
-    for pull in pulls:
-        for row, value in system.entries(pull):
-            column[row] = column[row] + value
 
 
 def _system(ready: Ready, state: State) -> Kinetostatics:
@@ -261,14 +238,12 @@ class ReactionKernels:
 
     Attributes
     ----------
-    places : rows and columns of the matrix where a number stands that is not plainly zero
-    blocks : numbers of equations of the groups that are solved one after the other
+    places : equation and unknown of each number of the matrix
     """
 
     sides: tuple[JointSide, ...]
-    size: int
-    places: tuple[npt.NDArray[np.intp], ...]
-    blocks: tuple[int, ...]
+    scheme: Scheme
+    places: tuple[tuple[int, int], ...]
     equations: SampleKernel
     results: SampleKernel
 
@@ -285,12 +260,10 @@ class ReactionKernels:
         ):
             return None
         traced = TracedEquations.of(solved, burden, accelerates)
-        matrix, forces, sides = traced.matrix(), traced.forces(), sides_of(mechanism)
-        stands = np.array([[not is_literal_zero(x) for x in row] for row in matrix])
-        places = np.nonzero(stands)
+        matrix, forces, sides = traced.system.matrix(), traced.forces(), sides_of(mechanism)
         equations = {
-            MATRIX: matrix[places],
-            RIGHT: traced.right_side(),
+            MATRIX: [*matrix.values()],
+            RIGHT: traced.system.right_side(traced.outer),
             STRENGTHS: traced.strengths,
             MOMENT: [traced.moment],
         }
@@ -298,9 +271,7 @@ class ReactionKernels:
         balances = balances_of(forces, traced.outer)
         results = {name: array[0] for name, array in parts.items()}
         results |= {f"{name} {k}": sizes for name, pair in balances.items() for k, sizes in enumerate(pair)}
-        return cls(
-            sides, scheme.size, places, scheme.blocks_of(stands), SampleKernel.of(equations), SampleKernel.of(results)
-        )  # fmt: skip
+        return cls(sides, scheme, tuple(matrix), SampleKernel.of(equations), SampleKernel.of(results))
 
     def solve(self, solved: Solved, pace: InputMotion) -> ReactionNumbers | None:
         """The reactions at the samples of a motion; None where a load has no finite amount there."""
@@ -308,10 +279,10 @@ class ReactionKernels:
         found = self.equations.run(known.rows(self.equations.inputs))
         if not np.isfinite(found[STRENGTHS]).all():
             return None
-        matrix = np.zeros((1, len(pace.acceleration), self.size, self.size))
-        matrix[0][:, *self.places] = found[MATRIX].T
-        inverse = inverse_of(matrix, self.blocks)
-        solution = inverse.times(-found[RIGHT][:, None])[:, 0]
+        matrix = dict(zip(self.places, found[MATRIX][:, None], strict=True))
+        scheme, shape = self.scheme, (1, len(pace.acceleration))
+        inverse = inverse_of(matrix, scheme.size, len(scheme.unknowns), shape)
+        solution = inverse.times(list(-found[RIGHT][:, None]))[:, 0]
         made = self.results.run(replace(known, solution=solution).rows(self.results.inputs))
         balances = {name: (made.pop(f"{name} 0")[0], made.pop(f"{name} 1")[0]) for name in BALANCES}
         parts = {name: np.ascontiguousarray(np.moveaxis(array, -1, 0)) for name, array in made.items()}

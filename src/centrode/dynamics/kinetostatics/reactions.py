@@ -333,10 +333,10 @@ def _greatest_size(parts: Sequence[Number], samples: int) -> Array:
     told = [x for x in parts if not (isinstance(x, float) and x == 0.0)]
     if any(isinstance(x, Node) for x in told):
         return np.array([functools.reduce(EXPRESSIONS.max, map(EXPRESSIONS.abs, told))], dtype=object)
-    greatest = np.zeros((1, samples))
-    for x in told:
-        np.maximum(greatest, np.abs(x), out=greatest)
-    return np.asarray(greatest[0])
+    table = np.empty((len(told), samples))
+    for row, x in zip(table, told, strict=True):
+        np.abs(x, out=row[None])
+    return np.asarray(table.max(axis=0, initial=0.0))
 
 
 def _greater(sizes: Array, others: Array) -> Array:
