@@ -121,7 +121,7 @@ def position_distance(loaded: LoadedMechanism, places: Array, other: Array) -> A
     if not counted_turns(loaded):
         return found
     counted = counted_values(loaded, np.concatenate([places, other[None]]))
-    return np.maximum(found, np.max(np.abs(counted[:-1] - counted[-1]), axis=1))
+    return np.asarray(np.maximum(found, np.max(np.abs(counted[:-1] - counted[-1]), axis=1)))
 
 
 def same_position(loaded: LoadedMechanism, places: Array, other: Array) -> Array:
