@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from centrode.geometry import sphere
 from centrode.structure.constraints import FRAME, Entity
@@ -18,8 +18,7 @@ NO_FORCE: Vector = (0.0, 0.0)
 NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Wrench:
+class Wrench(NamedTuple):
     """A force at a place, and a moment, on one body.
 
     Attributes

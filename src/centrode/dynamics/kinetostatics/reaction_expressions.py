@@ -170,7 +170,6 @@ def _over(x: Operand, divisor: Operand) -> Operand:
 # The equations of kinetostatics over nodes.
 
 
-@dataclass(frozen=True)
 class NodeWrench(Wrench):
     """A wrench of nodes: components that are plainly zero cost nothing."""
 
