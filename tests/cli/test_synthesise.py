@@ -61,12 +61,12 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\nsize = ["1 m", "1 m"]',
             2,
-            'unknown key "size"; did you mean "constraints.size"?',
+            'unknown key "size"; did you mean constraints.size?',
         ),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\npivots = {}',
             2,
-            'unknown key "pivots"; did you mean "constraints.pivots"?',
+            'unknown key "pivots"; did you mean constraints.pivots?',
         ),
         ('[synthesis]\nkind = "way"\ntopology = "crank-rocker"', 2, "expected one of"),
         (
