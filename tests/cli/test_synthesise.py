@@ -57,6 +57,17 @@ def test_strokes_are_printed_with_their_construction(centrode: Centrode, folder:
     [
         ("", 2, "there is no table [synthesis]"),
         ('[synthesis]\nkind = "path"', 2, "the structure that is sought is not given"),
+        # keys of the table below say where they belong
+        (
+            '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\nsize = ["1 m", "1 m"]',
+            2,
+            'unknown key "size"; did you mean constraints.size?',
+        ),
+        (
+            '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\npivots = {}',
+            2,
+            'unknown key "pivots"; did you mean constraints.pivots?',
+        ),
         ('[synthesis]\nkind = "way"\ntopology = "crank-rocker"', 2, "expected one of"),
         (
             '[synthesis]\nkind = "path"\ntopology = "crank-rocker"\ntargets = [[0, 0]]',

@@ -449,7 +449,7 @@ def even_grid(
             raise InputError(name, _("the range must be finite"))
     if path.parameter.is_uniform:
         ends = _range(path, start, stop, reach, reachable)
-        _check_range(path, ends, samples, given=not (start is None and stop is None))
+        _check_range(path, ends, samples, given=start is not None and stop is not None)
         span = _at_values(path, np.linspace(*ends, samples))
     elif reachable and None in (start, stop):
         raise InputError(

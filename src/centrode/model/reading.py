@@ -9,7 +9,8 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from types import UnionType
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WrapSerializer, model_validator
 
@@ -295,10 +296,24 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
         return {field.alias or name: name for name, field in cls.model_fields.items()}
 
     @classmethod
+    def keys_below(cls) -> dict[str, str]:
+        """Path of each key of the tables below, as "constraints.size"; none of a key that several tables have."""
+        paths: dict[str, list[str]] = {}
+        for key, name in cls.keys().items():
+            annotation = cls.model_fields[name].annotation
+            # of a table, and of one that may be left out; entries of lists have names or numbers before their keys
+            optional = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else ()
+            for part in (annotation, *optional):
+                if isinstance(part, type) and issubclass(part, DescriptionPart):
+                    for inner in dict(part.keys()):
+                        paths.setdefault(inner, []).append(f"{key}.{inner}")
+        return {key: found[0] for key, found in paths.items() if len(found) == 1}
+
+    @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given; a part adds its own rules."""
         keys = cls.keys()
-        unknown = unknown_keys(given, keys, cls.model_fields)
+        unknown = unknown_keys(given, keys, cls.model_fields, cls.keys_below())
         missing = [
             missing_key(key)
             for key, name in keys.items()
@@ -320,12 +335,22 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
 
 
 def unknown_keys(
-    given: Mapping[str, Any], keys: Collection[str], names: Collection[str] = ()
+    given: Mapping[str, Any],
+    keys: Collection[str],
+    names: Collection[str] = (),
+    below: Mapping[str, str] | None = None,
 ) -> list[Problem]:
-    """The problems of keys that are neither in `keys`, as files spell them, nor in `names`, as Python does."""
+    """The problems of keys that are neither in `keys`, as files spell them, nor in `names`, as Python does.
+
+    `below` has the paths of keys of the tables below, to which a key may belong.
+    """
+    paths = below or {}
     unknown = (key for key in given if key not in keys and key not in names)
     return [
-        Problem(_("unknown key {key}").format(key=value_text(key)), nearest(str(key), keys))
+        Problem(
+            _("unknown key {key}").format(key=value_text(key)),
+            _("did you mean {name}?").format(name=paths[key]) if key in paths else nearest(str(key), keys),
+        )
         for key in islice(unknown, PROBLEMS_SOUGHT)
     ]
 
