@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from centrode.synthesis.burmester import bilinear_pairs
 from centrode.synthesis.four_bars import Array, Booleans
@@ -149,7 +150,9 @@ class PosedLinkages:
         return closes
 
 
-def posed_linkages(poses: SphericalPoses, dyads: SphericalDyads, pairs: Array) -> PosedLinkages:
+def posed_linkages(
+    poses: SphericalPoses, dyads: SphericalDyads, pairs: npt.NDArray[np.int64]
+) -> PosedLinkages:
     """Linkages of pairs (pairs, 2) of dyads, of which the first is the crank."""
     w, g = (dyads.moving[pairs[:, 0]], dyads.moving[pairs[:, 1]]), (
         dyads.fixed[pairs[:, 0]], dyads.fixed[pairs[:, 1]]

@@ -353,7 +353,7 @@ def _best_attachments(variables: Array, crank: Array, side: Array, directions: A
     heading = coupler_headings(drawn, variables, np.zeros(len(variables)))
     across = np.cross(coupler_points(drawn, variables), heading)
     cosine = (heading * directions).sum(axis=(1, 2))
-    return np.arctan2((across * directions).sum(axis=(1, 2)), cosine)
+    return np.asarray(np.arctan2((across * directions).sum(axis=(1, 2)), cosine))
 
 
 def _answers(
@@ -570,7 +570,7 @@ def _dyad_pairs(number: int) -> IntArray:
     )
     first, second = np.meshgrid(few, few, indexing="ij")
     pairs = np.column_stack([first.ravel(), second.ravel()])
-    return pairs[pairs[:, 0] != pairs[:, 1]]
+    return np.asarray(pairs[pairs[:, 0] != pairs[:, 1]])
 
 
 class _Ways(NamedTuple):
@@ -694,8 +694,9 @@ def _ranks_of_exact(variables: Array, side: Array, crank: Array, rocker: Array, 
         cosines = np.abs(transmission_cosines(_frames(variables))).max(axis=1)
         # beyond one where the linkage does not close all round: it has no such angle, and comes last
         with np.errstate(invalid="ignore"):
-            return -np.nan_to_num(np.arccos(cosines))
-    return np.abs(_function_errors(variables, side, crank, rocker)).max(axis=1, initial=0.0)
+            return np.asarray(-np.nan_to_num(np.arccos(cosines)))
+    errors = np.abs(_function_errors(variables, side, crank, rocker))
+    return np.asarray(errors.max(axis=1, initial=0.0))
 
 
 def _unlike(variables: Array, worst: Array, order: IntArray, most: int) -> list[int]:

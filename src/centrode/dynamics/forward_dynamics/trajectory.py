@@ -280,7 +280,7 @@ def _columns(rows: Sequence[Number] | Array, n: int) -> Array:
 
 def _greatest(rows: Sequence[Number], n: int) -> Array:
     """The greatest size of the rows at each of n instants; zero where there are none."""
-    return np.max(np.abs(_columns(rows, n)), axis=1, initial=0.0)
+    return np.asarray(np.max(np.abs(_columns(rows, n)), axis=1, initial=0.0))
 
 
 def _contact_forces(
