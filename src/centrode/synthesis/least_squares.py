@@ -309,7 +309,7 @@ def _step(
     fixed |= (variables >= problem.high) & (gradient < 0)
     normal, scale = _with_unit_diagonals(normal, fixed)
     # lanes without numbers take no step
-    good = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
+    good: Booleans = np.asarray(np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
     normal[~good], gradient[~good] = np.eye(VARIABLES), 0.0
     inverse = np.linalg.inv(normal)
 
