@@ -16,9 +16,9 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parent.parent / "src"
 NOUNS = {
     "bearing", "spring", "gearing", "reading", "coupling", "damping", "balancing", "spelling", "drawing", "engineering",
-    "drafting", "bed", "speed", "seed", "feed",
+    "drafting", "bed", "speed", "seed", "feed", "embed",
 }  # fmt: skip
-"""Names of modules that end as participles do and are nouns."""
+"""Names that end as participles do and are nouns or verbs."""
 SMALL = 60
 """Lines below which a module may be a topic cut in pieces."""
 SHOWN = 12
@@ -88,7 +88,10 @@ def counts(modules: Sequence[Module], face: Path) -> Iterator[str]:
     sizes = f"{len(modules)} files, {sum(lines)} lines, median file {statistics.median(lines):.0f}"
     yield f"{sizes}; {len(functions)} functions, p95 {long} lines"
     yield "longest functions: " + ", ".join(f"{name} {size}" for size, name in functions[:-6:-1])
-    small = sum(module.lines < SMALL and not module.name.endswith("__main__") for module in modules)
+    # the file of a package that only names it is no topic
+    small = sum(
+        module.code > 0 and module.lines < SMALL and module.name != "centrode.__main__" for module in modules
+    )
     yield f"modules under {SMALL} lines: {small} (a topic cut in pieces?)"
     verbal = sorted(module.name.partition(".")[2] for module in modules if _verbal(module.name))
     yield f"modules named by a bare participle or gerund: {len(verbal)}: {_first(verbal, SHOWN)}"

@@ -289,15 +289,8 @@ def _step(
     rows, _closes = _residuals(problem, variables, side, crank)
     by, turn = _slopes(problem, variables, side, crank)
     lanes = len(crank)
-    flat = by.reshape(lanes, -1, VARIABLES)
-    transposed = flat.transpose(0, 2, 1)
-    normal = transposed @ flat
-    gradient = (transposed @ rows.reshape(lanes, -1, 1))[..., 0]
-    values = _hinges(problem, variables, side)
-    if values.shape[1]:
-        slopes = _hinge_slopes(problem, variables, side, values)
-        normal += problem.weight**2 * np.einsum("lmi,lmj->lij", slopes, slopes)
-        gradient += problem.weight**2 * np.einsum("lmi,lm->li", slopes, values)
+    transposed = by.reshape(lanes, -1, VARIABLES).transpose(0, 2, 1)
+    normal, gradient = _normal_equations(problem, variables, side, by, rows)
     diagonal = np.einsum("lii->li", normal)
     diagonal += damping[:, None] * (diagonal + 1e-12)
     free_crank = problem.targets.crank is None
@@ -314,12 +307,9 @@ def _step(
     # Variables that are fixed, or pressed against their bound, stay.
     fixed = ~problem.free | ((variables <= problem.low) & (gradient > 0))
     fixed |= (variables >= problem.high) & (gradient < 0)
-    normal = np.where(fixed[:, :, None] | fixed[:, None, :], 0.0, normal)
-    scale = np.sqrt(np.maximum(np.einsum("lii->li", normal), 1e-30))
-    scale = np.where(fixed, 1.0, scale)
-    normal = normal / (scale[:, :, None] * scale[:, None, :])
-    normal = normal + np.where(fixed, 1.0, 1e-15)[:, :, None] * np.eye(VARIABLES)
-    good = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
+    normal, scale = _with_unit_diagonals(normal, fixed)
+    # lanes without numbers take no step
+    good: Booleans = np.asarray(np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
     normal[~good], gradient[~good] = np.eye(VARIABLES), 0.0
     inverse = np.linalg.inv(normal)
 
@@ -349,6 +339,32 @@ def _step(
     step = step + bent * np.where(bent > 0, second, 0.0)
     turned = np.clip(turned + bent * np.where(bent > 0, turned_further, 0.0), -0.5, 0.5)
     return step, turned
+
+
+def _normal_equations(
+    problem: FitProblem, variables: Array, side: Array, by: Array, rows: Array
+) -> tuple[Array, Array]:
+    """Matrices (lanes, 11, 11) and right sides (lanes, 11) of the residuals and of hinges beyond their ranges."""
+    lanes = len(variables)
+    flat = by.reshape(lanes, -1, VARIABLES)
+    transposed = flat.transpose(0, 2, 1)
+    normal = transposed @ flat
+    gradient = (transposed @ rows.reshape(lanes, -1, 1))[..., 0]
+    values = _hinges(problem, variables, side)
+    if values.shape[1]:
+        slopes = _hinge_slopes(problem, variables, side, values)
+        normal += problem.weight**2 * np.einsum("lmi,lmj->lij", slopes, slopes)
+        gradient += problem.weight**2 * np.einsum("lmi,lm->li", slopes, values)
+    return normal, gradient
+
+
+def _with_unit_diagonals(normal: Array, fixed: Booleans) -> tuple[Array, Array]:
+    """Matrices with ones on their diagonals, and the scale of each variable; those that are fixed stand alone."""
+    normal = np.where(fixed[:, :, None] | fixed[:, None, :], 0.0, normal)
+    scale = np.sqrt(np.maximum(np.einsum("lii->li", normal), 1e-30))
+    scale = np.where(fixed, 1.0, scale)
+    normal = normal / (scale[:, :, None] * scale[:, None, :])
+    return normal + np.where(fixed, 1.0, 1e-15)[:, :, None] * np.eye(VARIABLES), scale
 
 
 def _sum_shared(values: Array, first: np.ndarray[tuple[int, ...], np.dtype[np.int64]] | None) -> Array:

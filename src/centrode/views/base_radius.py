@@ -220,34 +220,8 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
     admissible = Sentence("The bounds of the description determine it.")
     none = Sentence("No bounds are given: only undercutting of the profile is avoided.")
     yield Paragraph(admissible if bounded else none)
-    place = least.at % tau
-    decided = {"radius": _measured_length(least.base_radius), "angle": Number(place, "rad", digits="")}
-    if least.by == "pressure angle":
-        text = Sentence(
-            "The least base radius is {radius}. The pressure angle determines it, at $phi$ = {angle}:",
-            **decided,
-        )
-    elif least.by == "curvature":
-        text = Sentence(
-            "The least base radius is {radius}. The radius of curvature determines it, at $phi$ = {angle}:",
-            **decided,
-        )
-    elif least.by == "roller to curvature":
-        text = Sentence(
-            "The least base radius is {radius}. The roller determines it: at $phi$ = {angle} its radius is {ratio} of "
-            "the radius of curvature of its path:",
-            **decided,
-            ratio=Number(chosen_admissible(results.cam).roller_to_curvature),
-        )
-    else:
-        text = Sentence(
-            "The least base radius is {radius}. The roller determines it: its radius is {ratio} of the least radius "
-            "of its path:",
-            radius=decided["radius"],
-            ratio=Number(chosen_admissible(results.cam).roller_to_radius),
-        )
-    yield Paragraph(text)
-    formulas = FollowerFormulas(least_body(results), place)
+    yield Paragraph(_what_determines(results, least))
+    formulas = FollowerFormulas(least_body(results), least.at % tau)
     if least.by == "roller to radius":
         ratio = Number(chosen_admissible(results.cam).roller_to_radius)
         yield Formula((("r_0", length(least.base_radius)), *formulas.start(), ("frac(r, r_0 + r)", ratio)))
@@ -263,6 +237,37 @@ def _least(results: BaseRadiusResults) -> Iterator[Block]:
     given, flat = results.cam.bounds, results.cam.follower.contact == "flat"
     if results.best is not None and given.pressure_angle is not None and not flat:
         yield Paragraph(_best_offset(results.best, least))
+
+
+def _what_determines(results: BaseRadiusResults, least: Least) -> Sentence:
+    """The least radius, and which bound determines it at which angle of the cam."""
+    decided = {
+        "radius": _measured_length(least.base_radius),
+        "angle": Number(least.at % tau, "rad", digits=""),
+    }
+    if least.by == "pressure angle":
+        return Sentence(
+            "The least base radius is {radius}. The pressure angle determines it, at $phi$ = {angle}:",
+            **decided,
+        )
+    if least.by == "curvature":
+        return Sentence(
+            "The least base radius is {radius}. The radius of curvature determines it, at $phi$ = {angle}:",
+            **decided,
+        )
+    if least.by == "roller to curvature":
+        return Sentence(
+            "The least base radius is {radius}. The roller determines it: at $phi$ = {angle} its radius is {ratio} of "
+            "the radius of curvature of its path:",
+            **decided,
+            ratio=Number(chosen_admissible(results.cam).roller_to_curvature),
+        )
+    return Sentence(
+        "The least base radius is {radius}. The roller determines it: its radius is {ratio} of the least radius "
+        "of its path:",
+        radius=decided["radius"],
+        ratio=Number(chosen_admissible(results.cam).roller_to_radius),
+    )
 
 
 def _measured_length(value: float) -> Number:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -36,7 +36,7 @@ from centrode.kinematics.path import DrivenBy
 from centrode.laws import Uniform
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.initial_value_problems import END, HEADER, STEP, TIME
-from centrode.numerics.integrators import integrator_of
+from centrode.numerics.integrators import Integrator, integrator_of
 from centrode.numerics.scans import evaluate
 from centrode.structure.constraints import AngleDrive, DisplacementDrive, DistanceDrive, constraints_of
 from centrode.structure.dimensions import dimensions_of
@@ -192,34 +192,24 @@ def integrate_many(
     # what does not close is left where it is
     state[HEADER:, ~closes] = 0.0
     state[1, ~closes] = 0.0
-    integrator = integrator_of(integration.problem, executor, width=None)
-    bounds = np.linspace(0, lanes, threads + 1).astype(int)
     rows = np.full((len(instants), len(integration.problem.carried_names), lanes), np.nan)
     attempts = np.zeros(lanes)
     # events are found one mechanism after the other
-    waiting = enumerate(instants) if not equations.has_events else ()
-    with ThreadPoolExecutor(threads) as pool:
-        for number, instant in waiting:
-            parameters[CONTROLS.index(END)] = instant
-            jobs = [
-                pool.submit(integrator.run, parameters[:, low:high], state[:, low:high], ATTEMPTS)
-                for low, high in pairwise(bounds.tolist())
-            ]
-            state = np.concatenate([job.result() for job in jobs], axis=1)
+    if not equations.has_events:
+        integrator = integrator_of(integration.problem, executor, width=None)
+        for number, reached in enumerate(_states_at(integrator, parameters, state, instants, threads)):
+            state = reached
             attempts += state[2]
-            arrived = closes & (state[0] >= instant)
+            arrived = closes & (state[0] >= instants[number])
             rows[number][:, arrived] = state[HEADER:, arrived]
             if progress is not None:
                 progress((number + 1) / len(instants))
     ended = np.where(closes, ENDS.index(DURATION), ENDS.index(NOT_ASSEMBLED)).astype(np.int8)
-    for lane in np.flatnonzero(closes & (state[0] < instants[-1])):
-        own = free.with_numbers(map_equations(equations, partial(_of_lane, int(lane))))
+    for lane in np.flatnonzero(closes & (state[0] < instants[-1])).tolist():
+        own = free.with_numbers(map_equations(equations, partial(_of_lane, lane)))
         begun_there = InitialState(begun.coordinates[:, lane].copy(), begun.speeds[:, lane].copy())
-        steps = own.integration.explicit_steps(begun_there, float(instants[-1]), tolerance, executor)
-        reached = instants[instants <= steps.rows[0, -1]]
-        rows[: len(reached), :, lane] = own.integration.states_at(steps, reached, executor).T
-        rows[len(reached) :, :, lane] = np.nan
-        ended[lane] = ENDS.index(steps.ended)
+        rows[:, :, lane], end = _rows_of_one(own, begun_there, instants, tolerance, executor)
+        ended[lane] = ENDS.index(end)
     coordinates, speeds = rows[:, names.part(names.coordinates)], rows[:, names.part(names.speeds)]
     works = np.sum(rows[:, names.part(names.works)], axis=1)
     with np.errstate(all="ignore"):
@@ -237,6 +227,37 @@ def integrate_many(
         instants, coordinates, speeds, kinetic, potential,
         kinetic + potential - began[0] - began[1] - works, np.max(arrivals, axis=0), ended, attempts,
     )  # fmt: skip
+
+
+def _states_at(
+    integrator: Integrator, parameters: Array, state: Array, instants: Array, threads: int
+) -> Iterator[Array]:
+    """States (header + carried, lanes) of all lanes at one instant after the other, or where they stopped before it."""
+    bounds = np.linspace(0, state.shape[1], threads + 1).astype(int)
+    with ThreadPoolExecutor(threads) as pool:
+        for instant in instants:
+            parameters[CONTROLS.index(END)] = instant
+            jobs = [
+                pool.submit(integrator.run, parameters[:, low:high], state[:, low:high], ATTEMPTS)
+                for low, high in pairwise(bounds.tolist())
+            ]
+            state = np.concatenate([job.result() for job in jobs], axis=1)
+            yield state
+
+
+def _rows_of_one(
+    free: FreeMotion, start: InitialState, instants: Array, tolerance: float, executor: str
+) -> tuple[Array, str]:
+    """What one motion carries at instants (instants, carried), NaN behind its end, and how it ends.
+
+    Its events and change points are looked for, which many lanes at once leave out.
+    """
+    integration = free.integration
+    steps = integration.explicit_steps(start, float(instants[-1]), tolerance, executor)
+    reached = instants[instants <= steps.rows[0, -1]]
+    rows = np.full((len(instants), len(integration.problem.carried_names)), np.nan)
+    rows[: len(reached)] = integration.states_at(steps, reached, executor).T
+    return rows, steps.ended
 
 
 def _of_lane(lane: int, number: Any) -> Any:
