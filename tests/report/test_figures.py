@@ -112,13 +112,10 @@ def test_curves_are_described_by_their_axes_ranges_and_names() -> None:
 
 
 def test_labels_of_panels_keep_out_of_each_other() -> None:
-    """A word of eleven letters is taller than a panel that is drawn as low as three on a page are."""
+    """A word of sixteen letters is taller than a panel that is drawn as low as three on a page are."""
     with house_style():
-        figure = Figure(figsize=(6.3, 6.0), layout="constrained")
-        for place, label in enumerate(
-            ["удельное скольжение", "коэффициент удельного давления", "скорость скольжения"]
-        ):
-            figure.add_subplot(3, 1, place + 1).set_ylabel(label)
+        figure = curves(3, "коэффициентность удельного давления")
+        figure.axes[-1].set_xlabel("вдоль линии зацепления")
     picture(figure, "Sliding")
     figure.draw_without_rendering()
     boxes = [axes.yaxis.label.get_window_extent() for axes in figure.axes]
