@@ -54,6 +54,10 @@ def test_options_and_fields_are_named_in_the_language(ask):
     assert not {field["name"] for field in fields if field["of"] in ("cam", "follower")} & set(WORDS)
 
 
+LOOK = re.compile(r"none|currentColor|var\(--paper\)|light-dark\(#[0-9a-f]{6}, #[0-9a-f]{6}\)")
+"""Colours that follow the screen."""
+
+
 @pytest.mark.parametrize(
     ("name", "topic"), [("six-bar-press", "centres"), ("indexing-cam", "follower-motion")]
 )
@@ -63,18 +67,18 @@ def test_pictures_have_the_edges_of_their_ground_and_commas(ask, name, topic):
     pictures = [block for block in panel["blocks"] if block["kind"] == "picture"]
     assert pictures
     for block in pictures:
-        edges = {
-            form: set(
-                re.findall(
-                    r'style="fill: (#\w+); stroke: \1; stroke-width: [\d.]+; stroke-linejoin: round',
-                    block[form],
-                )
+        edges = set(
+            re.findall(
+                r'style="fill: ([^;"]+); stroke: \1; stroke-width: [\d.]+; stroke-linejoin: round',
+                block["svg"],
             )
-            for form in ("svg", "dark")
-        }
-        assert edges["svg"] <= {"#ffffff"} and edges["dark"] <= {"#171717"}
-        assert bool(edges["svg"]) == bool(edges["dark"])
-        assert "DejaVuSans-2e" not in block["svg"] + block["dark"]  # the full stop, among outlines of letters
+        )
+        assert edges <= {"var(--paper)"}
+        colours = set(re.findall(r"(?:fill|stroke): ([^;\"]+)", block["svg"]))
+        assert len(colours) > 3
+        assert all(LOOK.fullmatch(one) for one in colours)
+        assert "#" not in "".join(re.findall(r' (?:fill|stroke)="([^"]+)"', block["svg"]))
+        assert "DejaVuSans-2e" not in block["svg"]  # the full stop, among outlines of letters
 
 
 def test_what_is_wrong_names_no_option_of_the_command(ask):

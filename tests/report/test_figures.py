@@ -109,3 +109,14 @@ def test_curves_are_described_by_their_axes_ranges_and_names() -> None:
     upper.set_aspect("equal")
     lower.set_aspect("equal")
     assert describe_curves(figure) == ""  # a drawing
+
+
+def test_labels_of_panels_keep_out_of_each_other() -> None:
+    """A word of sixteen letters is taller than a panel that is drawn as low as three on a page are."""
+    with house_style():
+        figure = curves(3, "коэффициентность удельного давления")
+        figure.axes[-1].set_xlabel("вдоль линии зацепления")
+    picture(figure, "Sliding")
+    figure.draw_without_rendering()
+    boxes = [axes.yaxis.label.get_window_extent() for axes in figure.axes]
+    assert all(not one.overlaps(other) for one, other in pairwise(boxes))

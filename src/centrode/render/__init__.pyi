@@ -1,6 +1,5 @@
 # One import an entry and one name an import: lazy_loader reads these lines.
 from .document.scale import screen_svg as screen_svg
-from .drawing.style import darken as darken
 from .figures.pictures import figure_of as figure_of
 from .figures.pictures import figures_of as figures_of
 from .figures.pictures import write_pictures as write_pictures

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
+from centrode.render.drawing.looks import INK, Look, screen_figure
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import METADATA, spell_decimals
 from centrode.render.figures.pictures import figures_of
@@ -29,15 +30,36 @@ def sheet_html(sheet: Sheet, display: Display) -> str:
     return "".join(map(figure_html, drawn.values())) + HypertextPage(display).page(sheet, "")
 
 
+DARK_NOTEBOOKS = (
+    "html[theme=dark]",
+    "html[data-theme=dark]",
+    "body[data-theme=dark]",
+    "body[data-jp-theme-light=false]",
+    "body.vscode-dark",
+)
+"""How notebooks say that they are dark: they have a choice of their own, whatever the system asks for."""
+
+
 def figure_html(figure: Figure) -> str:
-    """A figure as SVG within a page."""
+    """A figure as SVG within a page, which follows the look of notebooks; without their word it is as on paper."""
     with house_style():
         spell_decimals(figure)
         canvas: Any = FigureCanvasSVG(figure)
         drawn = io.BytesIO()
         canvas.print_svg(drawn, metadata=METADATA["svg"])
-    text = drawn.getvalue().decode()
-    return f"<div style='max-width: 36em'>{text[text.index('<svg') :]}</div>"
+    looks: dict[str, Look] = {}
+
+    def spelled(look: Look) -> str:
+        name = f"--centrode-{look.printed[1:]}-{look.dark[1:]}"
+        looks[name] = look
+        return f"var({name}, {look.printed})"
+
+    ink = spelled(INK)
+    svg = screen_figure(drawn.getvalue().decode(), spelled)
+    dark = "; ".join(f"{name}: {look.dark}" for name, look in looks.items())
+    places = ", ".join(f"{one} .centrode-figure" for one in DARK_NOTEBOOKS)
+    style = f"<style>{places} {{ {dark} }}</style>"
+    return f"{style}<div class='centrode-figure' style='max-width: 36em; color: {ink}'>{svg}</div>"
 
 
 def rows_html(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

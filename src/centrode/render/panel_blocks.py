@@ -340,10 +340,8 @@ class _BlockWriter:
     def _drawn(self, name: str, picture: Picture) -> JSON:
         title = getattr(picture, "title", None)
         words = name if title is None else self.spelling.text(title)
-        figure = render.figure_of(picture, self.display)
-        light = render.screen_svg(figure, picture).decode()
-        dark = render.screen_svg(render.darken(figure), picture).decode()
-        return {"kind": "picture", "name": name, "title": words, "svg": light, "dark": dark, "alt": words}
+        svg = render.screen_svg(render.figure_of(picture, self.display), picture)
+        return {"kind": "picture", "name": name, "title": words, "svg": svg, "alt": words}
 
     def arrows(self, arrows: PointArrows) -> JSON:
         factor, unit = self._shown(arrows.unit)

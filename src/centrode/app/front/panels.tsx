@@ -44,9 +44,6 @@ export function Markup({ text, className, label }: { text: string; className: st
   return <div class={className} ref={holder} />;
 }
 
-const night = matchMedia("(prefers-color-scheme: dark)"), dark = signal(night.matches);
-night.addEventListener("change", () => { dark.value = night.matches; });
-
 // Symbols such as R_n with their indices lowered; names of the description stay as they are written.
 const SYMBOL = /(?<![\p{L}\p{N}_])(\p{L}[ⁿᵗʳ′]*_[\p{L}\p{N}]+)(?![\p{L}\p{N}_])/u;
 function Symbols({ text }: { text: string }) {
@@ -101,7 +98,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
     case "picture":
       return (
         <figure>
-          <Markup className={block.dark && dark.value ? "paper dark" : "paper"} text={block.dark && dark.value ? block.dark : block.svg} label={block.alt || block.title || say("picture")} />
+          <Markup className="paper" text={block.svg} label={block.alt || block.title || say("picture")} />
           {block.title && <figcaption><Symbols text={block.title} /></figcaption>}
         </figure>
       );

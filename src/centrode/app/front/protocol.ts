@@ -233,7 +233,7 @@ export type Block =
   | { kind: "facts"; facts: Fact[] }
   | { kind: "table"; title?: string; columns: Column[]; rows: (string | number | null)[][] }
   | { kind: "plot"; title?: string; x: Curve & { ends?: [number, number] | null }; y?: { label: string; unit: string }; curves: Curve[]; cursor?: string | null; marks?: { label: string; at: number | null }[]; shaded?: [number | null, number | null][] }
-  | { kind: "picture"; title?: string; svg: string; dark?: string; alt?: string }
+  | { kind: "picture"; title?: string; svg: string; alt?: string }
   | MotionBlock
   | { kind: "formula"; text?: string; mathml?: string }
   | { kind: "paragraph"; text: string; item?: boolean }

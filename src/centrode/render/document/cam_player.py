@@ -17,12 +17,12 @@ from centrode.render.document.blocks import Moving, Outline, shown
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers
 from centrode.render.drawing.cams import GAP, WALLS, FollowerDrawing
+from centrode.render.drawing.colours import CARRIER
 from centrode.render.drawing.linkage import MARGIN
 from centrode.render.drawing.signs import slider_outline
 from centrode.render.drawing.style import GROUND, INK, MUTED, house_style
 from centrode.render.drawing.walking_wheel import (
     CAM,
-    CARRIER,
     FREE,
     PRINT,
     carrier_radius,

@@ -219,7 +219,10 @@ def _flatten(figure: Figure) -> None:
     # bars beside their names need a line for each of them
     if any(isinstance(one.yaxis.get_major_locator(), FixedLocator) for one in axes):
         return
-    figure.set_figheight(min(FLAT[rows] * figure.get_figwidth(), figure.get_figheight()))
+    # no word of a label is longer than its panel: it would run into the label of the next one
+    words = [word for one in axes if "$" not in (label := one.get_ylabel()) for word in label.split()]
+    least = EDGES + rows * (GAP + LETTER * max(map(len, words), default=0))
+    figure.set_figheight(min(max(FLAT[rows] * figure.get_figwidth(), least), figure.get_figheight()))
     room = int(((figure.get_figheight() - EDGES) / rows - GAP) / LETTER)
     for one in axes:
         label = one.get_ylabel().replace(" = ", "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}")

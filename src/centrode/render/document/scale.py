@@ -11,6 +11,7 @@ from matplotlib.transforms import Bbox
 
 from centrode.render.document.blocks import Picture
 from centrode.render.document.figures import svg_of
+from centrode.render.drawing.looks import either_look, screen_figure
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.document_canvas import MeasuringCanvas
 from centrode.render.figures.files import spell_decimals
@@ -48,13 +49,15 @@ def page_end(page: Pages, figure: Figure) -> tuple[float, float]:
             assert_never(page)
 
 
-def screen_svg(figure: Figure, picture: AnyPicture) -> bytes:
-    """A figure as SVG for a screen, where its title stands beside it: of a page its drawing, cut from it."""
+def screen_svg(figure: Figure, picture: AnyPicture) -> str:
+    """A figure as SVG for a light or a dark screen, where its title stands beside it: of a page its drawing alone."""
     if isinstance(picture, Pages):
-        return drawn_to_scale(figure, "", *page_end(picture, figure)).svg
-    figure.suptitle("").set_in_layout(False)
-    spell_decimals(figure)
-    return svg_of(figure)
+        drawn = drawn_to_scale(figure, "", *page_end(picture, figure)).svg
+    else:
+        figure.suptitle("").set_in_layout(False)
+        spell_decimals(figure)
+        drawn = svg_of(figure)
+    return screen_figure(drawn.decode(), either_look)
 
 
 def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Picture:

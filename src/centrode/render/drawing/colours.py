@@ -9,3 +9,5 @@ MARKERS = ("", "o", "s", "^", "D", "v")
 MUTED = "#8A8A8A"
 GROUND = "#404040"
 INK = "#202020"
+CARRIER = "#606060"
+"""What carries the legs of a walking wheel."""

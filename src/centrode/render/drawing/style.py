@@ -5,12 +5,11 @@ A figure is drawn at the size that it has on paper, so that a size in points is 
 
 from __future__ import annotations
 
-import colorsys
 import functools
 import logging
 import re
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -31,6 +30,7 @@ from centrode.render.drawing.colours import INK as INK
 from centrode.render.drawing.colours import MARKERS as MARKERS
 from centrode.render.drawing.colours import MUTED as MUTED
 from centrode.render.drawing.colours import PALETTE as PALETTE
+from centrode.render.drawing.looks import RGB, dark_area, dark_line
 
 APPROXIMATE: Any = (0, (5, 1.2))
 CUT: Any = (0, (3, 2))
@@ -155,11 +155,6 @@ class Decimals(ScalarFormatter):
 
 # The same picture with light lines on a dark ground.
 
-Colour = tuple[float, float, float, float]
-DARK_GROUND = 0.09  # lightness of what was white
-LEAST = 0.58  # lightness that a coloured line gets at least
-TINT = 0.8  # lightness of areas that are tints of the ground, at least
-
 
 def darken(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
@@ -213,24 +208,17 @@ def _recolour_patch(patch: Patch) -> None:
 
 
 def _ground(colour: Any) -> Any:
-    """The colour of an area: a tint of the white ground becomes one of the dark ground."""
-    if isinstance(colour, str) and colour in ("none", "auto"):
-        return colour
-    red, green, blue, alpha = to_rgba(colour)
-    hue, lightness, saturation = colorsys.rgb_to_hls(red, green, blue)
-    if saturation < 0.05 or lightness < TINT:
-        return _light(colour)
-    return (*colorsys.hls_to_rgb(hue, DARK_GROUND + 1.2 * (1.0 - lightness), saturation), alpha)
+    """The colour of an area on the dark ground; none stays none."""
+    return _turned(colour, dark_area)
 
 
 def _light(colour: Any) -> Any:
-    """A colour as it is seen best on the dark ground; none stays none."""
+    """The colour of a line or of letters on the dark ground; none stays none."""
+    return _turned(colour, dark_line)
+
+
+def _turned(colour: Any, by: Callable[[RGB], RGB]) -> Any:
     if isinstance(colour, str) and colour in ("none", "auto"):
         return colour
     red, green, blue, alpha = to_rgba(colour)
-    hue, lightness, saturation = colorsys.rgb_to_hls(red, green, blue)
-    if saturation < 0.05:
-        lightness = DARK_GROUND + (1.0 - DARK_GROUND - 0.04) * (1.0 - lightness)
-    else:
-        lightness = max(lightness, LEAST)
-    return (*colorsys.hls_to_rgb(hue, lightness, saturation), alpha)
+    return (*by((red, green, blue)), alpha)

@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, Polygon
 
 from centrode.locale import _
 from centrode.model.settings import shown_as
+from centrode.render.drawing.colours import CARRIER
 from centrode.render.drawing.signs import ground, slider
 from centrode.render.drawing.style import CENTRE_LINE, GROUND, INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, PALETTE
 from centrode.render.drawing.texts import label_with_unit
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from centrode.sheets.outlines import WheelPositions
 
 POINTS = 361
-CAM, STANDING, FREE, CARRIER, PRINT = PALETTE[0], PALETTE[1], PALETTE[2], "#606060", PALETTE[4]
+CAM, STANDING, FREE, PRINT = PALETTE[0], PALETTE[1], PALETTE[2], PALETTE[4]
 
 
 def draw_wheel(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> list[Artist]:

@@ -10,6 +10,7 @@ from xml.etree import ElementTree as Xml
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.render.drawing.looks import INK, LIGHT_PAPER, Look, set_looks
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
@@ -58,12 +59,14 @@ class Drawings:
     letters : outlines that they share -> the name of each
     texts : letters of texts that they share -> the name of each
     pens : strokes and fills that they share -> the class of each
+    looks : their colours -> the variable of each
     count : of figures
     """
 
     letters: dict[str, str] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     pens: dict[str, str] = field(default_factory=dict)
+    looks: dict[Look, str] = field(default_factory=dict)
     count: int = 0
 
     def embedded_figure(self, svg: bytes, label: str) -> str:
@@ -87,6 +90,7 @@ class Drawings:
         _join_edges(whole)
         _join_strokes(whole)
         _group_by_clip(whole)
+        set_looks(whole, self._spelled)
         self._share_pens(whole)
         self._share_texts(whole)
         return _written(whole)
@@ -102,8 +106,25 @@ class Drawings:
         return f'<svg class="letters" width="0" height="0" aria-hidden="true"><defs>{outlines}{texts}</defs></svg>'
 
     def style(self) -> str:
-        """The rules of the pens that figures share."""
-        return "".join(f"svg .{name} {{ {pen} }}\n" for pen, name in self.pens.items())
+        """The rules of the pens that figures share, and their colours in both looks of a screen and on paper."""
+        light, dark, printed = (
+            "".join(f" --{name}: {getattr(look, which)};" for look, name in self.looks.items())
+            for which in ("light", "dark", "printed")
+        )
+        colours = (
+            f":root {{{light} }}\n@media (prefers-color-scheme: dark) {{ :root {{{dark} }} }}\n"
+            f"@media print {{ :root {{{printed} }} }}\n"
+        )
+        pens = "".join(f"svg .{name} {{ {pen} }}\n" for pen, name in self.pens.items())
+        return (colours if self.looks else "") + pens
+
+    def _spelled(self, look: Look) -> str:
+        """A colour of a figure: the paper or the ink of the page, or a variable."""
+        if look.printed == LIGHT_PAPER:
+            return "var(--paper)"
+        if look == INK:
+            return "currentColor"
+        return f"var(--{self.looks.setdefault(look, f'c{len(self.looks)}')})"
 
     def _share_pens(self, whole: Xml.Element) -> None:
         """A class in place of each style."""

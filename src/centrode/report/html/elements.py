@@ -136,7 +136,7 @@ class Elements:
 
     def picture(self, block: Picture) -> str:
         """A figure with its caption."""
-        paper = f'<div class="paper" style="width:{block.width:.4g}in">{self.drawing(block)}</div>'
+        paper = f'<div class="paper" style="--size:{block.width:.4g}in">{self.drawing(block)}</div>'
         return f"<figure>{paper}{self.caption(block)}</figure>"
 
     def moving(self, block: Moving) -> str:

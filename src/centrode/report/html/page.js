@@ -21,7 +21,15 @@ const fit = () => {
   const tables = [...document.querySelectorAll("table")].map((one) => [one, ofTable(one)]);
   for (const [one, wide] of [...formulas, ...tables]) one.style.setProperty("--wide", Math.max(1, wide).toFixed(2));
 };
-document.fonts.ready.then(fit);
+// What is still wider is scrolled, by keyboard too.
+const scroll = () => {
+  for (const one of document.querySelectorAll(".table, .formulas, figure > .paper")) {
+    if (one.scrollWidth > one.clientWidth + 1) one.tabIndex = 0;
+    else one.removeAttribute("tabindex");
+  }
+};
+document.fonts.ready.then(fit).then(scroll);
+addEventListener("resize", scroll);
 
 const links = new Map([...document.querySelectorAll("nav a")].map((one) => [one.getAttribute("href").slice(1), one]));
 const here = () => {

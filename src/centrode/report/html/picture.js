@@ -71,7 +71,7 @@ class Picture {
   }
 
   shape(shape, parent) {
-    const fill = shape.white ? "#ffffff" : shape.filled ? shape.colour : "none";
+    const fill = shape.white ? "var(--stage)" : shape.filled ? shape.colour : "none";
     const made = make("path", { class: shape.ground ? "ground" : shape.line ? "link" : "shape", d: shape.d, stroke: shape.colour, fill,
       "fill-opacity": shape.white ? 1 : 0.16 }, parent);
     return { made, series: new Series(shape.at, 3) };

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.render.document.blocks import Moving, Outline, RingBlock
-from centrode.render.drawing.colours import GROUND, MARKERS, PALETTE
+from centrode.render.drawing.colours import CARRIER, GROUND, INK, MARKERS, MUTED, PALETTE
 from centrode.report.html.parts import page_data
 
 Array = NDArray[np.float64]
@@ -95,6 +95,15 @@ _MARKERS = {
 }
 """Outlines of the markers of links that share a colour, in thousandths of an inch as the picture is."""
 
+SCREEN_COLOURS = {
+    **{colour: f"var(--hue-{place})" for place, colour in enumerate(PALETTE)},
+    GROUND: "var(--earth)",
+    INK: "var(--sign)",
+    MUTED: "var(--trace)",
+    CARRIER: "var(--carrier)",
+}
+"""Colours of moving drawings as variables of `motion.css`, which has them for light and dark screens and for paper."""
+
 
 def controls_of(first: str, more: str = "", ticks: str = "") -> str:
     """The controls of a player; `first` says where it begins, `more` are elements behind its own, `ticks` under it."""
@@ -146,7 +155,7 @@ def _data(moving: Moving) -> dict[str, Any]:
             {
                 "d": sheet.path(one.corners, one.filled or one.white),
                 "at": sheet.poses(one.poses),
-                "colour": one.colour,
+                "colour": SCREEN_COLOURS[one.colour],
                 "filled": one.filled,
                 "white": one.white,
                 "line": len(one.corners) == 2,
@@ -156,7 +165,7 @@ def _data(moving: Moving) -> dict[str, Any]:
             for one in outlines
         ],
         "rings": [
-            {"at": _vectors(one.poles), "arc": one.arc, "colour": one.colour}
+            {"at": _vectors(one.poles), "arc": one.arc, "colour": SCREEN_COLOURS[one.colour]}
             for one in moving.shapes
             if isinstance(one, RingBlock)
         ],
@@ -208,7 +217,7 @@ def _ticks(moving: Moving) -> str:
 def look_of_link(number: int) -> dict[str, str]:
     """Colour and marker of the link that is the `number`-th in the description."""
     return {
-        "colour": PALETTE[number % len(PALETTE)],
+        "colour": SCREEN_COLOURS[PALETTE[number % len(PALETTE)]],
         "marker": _MARKERS[MARKERS[number // len(PALETTE) % len(MARKERS)]],
     }
 

@@ -10,7 +10,7 @@ from centrode.model.links import Guide, Link, Rolling
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
 from centrode.render.drawing.colours import GROUND
-from centrode.report.html.stage import look_of_link, support_sign
+from centrode.report.html.stage import SCREEN_COLOURS, look_of_link, support_sign
 from centrode.report.mechanism_page.driving_cams import cams_of
 from centrode.report.mechanism_page.numbers_that_vary import joints_of
 from centrode.scenes.places import corners
@@ -148,7 +148,9 @@ def _rings(mechanism: Mechanism, points: list[str], links: list[str]) -> list[di
                 "fixed": guide.on == FRAME,
                 "arc": guide.arc,
                 "arcPath": f"guides.{guide.id}.radius",
-                "colour": GROUND if guide.on == FRAME else look_of_link(links.index(guide.on))["colour"],
+                "colour": SCREEN_COLOURS[GROUND]
+                if guide.on == FRAME
+                else look_of_link(links.index(guide.on))["colour"],
             }
         )
     return found

@@ -1,5 +1,5 @@
 // Conventional signs whose size hangs on the dimensions: guides with their ground, slots, blocks, wheels, barrels.
-const SIGN = HINGE, GROUND = "#404040", INK = "#202020";
+const SIGN = HINGE, GROUND = "var(--earth)", INK = "var(--sign)";
 const degrees = (angle) => (angle * 180) / Math.PI;
 const turned = ([x, y], angle) => [x * Math.cos(angle) - y * Math.sin(angle), x * Math.sin(angle) + y * Math.cos(angle)];
 const plus = (a, b, share = 1) => a.map((value, k) => value + share * b[k]);
