@@ -222,7 +222,7 @@ export function ReadinessView() {
         <p class="lacks">{say("loose_points")} {now.loose.map((name) => <button type="button" class="name" onClick={() => { selection.value = [name]; }}>{name}</button>)}</p>
       )}
       {(now.ready ?? (!now.missing.length && !now.loose.length)) && <p class="good">{say("ready")}</p>}
-      {now.limit && <p class="limit">{sentence(now.limit)}</p>}
+      {now.limit && <p class="limit">{typeset(sentence(now.limit))}</p>}
       <Facts facts={now.facts.slice(0, 1)} />
       {now.facts.length > 1 && <details class="more"><summary>{say("more")}</summary><Facts facts={now.facts.slice(1)} /></details>}
     </div>
