@@ -119,7 +119,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
             title: [block.title, block.y?.label].filter(Boolean).join(": "), unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit), ends: block.x.ends },
             shaded: (block.shaded ?? []).flatMap(([from, to]) => (from === null || to === null ? [] : [{ from, to }])),
             places: (block.marks ?? []).flatMap((mark) => (mark.at === null ? [] : [{ at: mark.at, label: mark.label }])),
-            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, pen: curve.pen, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
+            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, pen: curve.pen, ...(curve.x ? { x: numbers(curve.x) } : {}), ...(curve.finer ? { finer: { x: numbers(curve.finer.x), values: numbers(curve.finer.values) } } : {}) })),
           })),
         };
       }
