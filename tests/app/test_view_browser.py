@@ -40,6 +40,22 @@ POWERS = """() => {
 """Numbers with a power of ten in panels of many widths: with a unit, in texts of several lines, and broken ones."""
 
 
+CORNERS = """() => {
+  const paths = [...document.querySelectorAll(".drawing .track:not(.far)")].filter((one) => one.getAttribute("d"));
+  const wide = (one) => one.getBBox().width;
+  const path = paths.sort((one, other) => wide(other) - wide(one))[0];
+  const places = path.getAttribute("d").slice(1).split(/[LM]/).map((one) => one.split(" ").map(Number));
+  const ways = places.slice(1).map(([x, y], k) => [x - places[k][0], y - places[k][1]])
+    .filter((one) => Math.hypot(...one) > 20);
+  const corners = ways.slice(1).map(([x, y], k) => {
+    const [a, b] = ways[k];
+    return Math.abs(Math.atan2(a * y - b * x, a * x + b * y));
+  });
+  return [ways.length, Math.max(...corners) * 180 / Math.PI];
+}"""
+"""Pieces of the widest path of the drawing that are two pixels long and more, and its sharpest corner in degrees."""
+
+
 @pytest.fixture(scope="module")
 def running() -> Iterator[Any]:
     with browser() as one:
@@ -159,14 +175,29 @@ def test_an_edit_names_each_element_once(running: Any, server: Served, expect: A
         assert one.messages == []
 
 
-def test_a_power_of_ten_stays_with_its_unit(running: Any, server: Served) -> None:
-    """In panels of every width, whatever else of the sentence goes to the next line."""
+def test_a_sentence_on_the_range_has_a_minus_of_print(running: Any, server: Served) -> None:
+    """A drive whose limits lie on both sides of zero: the readiness tells its range as reports do."""
+    with bench(running, server.address, wide=1500) as one:
+        one.template("slider-between-cranks-locked")
+        one.settle()
+        said = one.page.inner_text(".readiness .limit")
+        assert re.search(r"\d", said)
+        assert not re.search(r"(?<!\w)-\d", said)
+        assert "\u2212" in said
+
+
+def test_a_fast_oscillation_is_drawn_round_and_its_powers_stay_whole(running: Any, server: Served) -> None:
+    """A path has no corners between its samples; a power of ten keeps its unit in panels of every width."""
     with bench(running, server.address, wide=1500) as one:
         begun(one, "vibrating-screen")
         one.page.click("#tab-simulate")
         one.until(lambda: one.page.get_attribute("#panel", "data-ready") == "true")
         one.settle()
         frames(one.page)
+        pieces, corner = one.page.evaluate(CORNERS)
+        # the exciter's circle has a dozen samples a turn, corners of thirty degrees
+        assert pieces > 3000
+        assert corner < 8
         found = one.page.evaluate(POWERS)
         assert found["wrapped"] > 20
         assert found["units"] > 20

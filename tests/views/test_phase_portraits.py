@@ -19,8 +19,8 @@ def test_an_oscillation_is_an_ellipse(samples: float) -> None:
     a, w = 0.004, 100.0
     time = np.arange(60) * 2 * np.pi / w / samples
     course = a * np.sin(w * time), a * w * np.cos(w * time), -a * w**2 * np.sin(w * time)
-    values, speeds = _between_samples(time, course, NO_OCCASIONS)
-    assert set(course[0]) <= set(values) and set(course[1]) <= set(speeds)
+    values, speeds, places = _between_samples(time, course, NO_OCCASIONS)
+    assert np.array_equal(values[places], course[0]) and np.array_equal(speeds[places], course[1])
     middles = [0.5 * (one[1:] + one[:-1]) for one in (values, speeds)]
     # the remainder of a cubic with slopes is (w dt)^4/384 of the amplitude; a finer chord's sagitta comes on top
     turn = 2 * np.pi / samples
@@ -34,8 +34,9 @@ def test_an_oscillation_is_an_ellipse(samples: float) -> None:
 def test_a_straight_course_stays_as_sampled() -> None:
     time = np.linspace(0.0, 2.0, 21)
     course = 3.0 * time, np.full(21, 3.0), np.zeros(21)
-    values, speeds = _between_samples(time, course, NO_OCCASIONS)
+    values, speeds, samples = _between_samples(time, course, NO_OCCASIONS)
     assert np.array_equal(values, course[0]) and np.array_equal(speeds, course[1])
+    assert np.array_equal(samples, np.arange(21))
 
 
 def test_no_curve_leads_over_an_impact() -> None:
@@ -44,8 +45,9 @@ def test_no_curve_leads_over_an_impact() -> None:
     height = np.where(time < 0.25, 0.5 - 8.0 * time**2, 4.0 * (time - 0.25) - 8.0 * (time - 0.25) ** 2)
     speed = np.where(time < 0.25, -16.0 * time, 4.0 - 16.0 * (time - 0.25))
     course = height, speed, np.full(11, -16.0)
-    values, speeds = _between_samples(time, course, np.array([0.25]))
+    values, speeds, samples = _between_samples(time, course, np.array([0.25]))
     assert len(values) == 11 + (10 - 1) * 7
+    assert np.array_equal(values[samples], height)
     at = int(np.flatnonzero(values == height[2])[0])
     assert values[at + 1] == height[3]
     before, after = np.arange(at + 1), np.arange(at + 1, len(values))

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.pictures import Picture
     from centrode.sheets.players import MarkedEvent
-    from centrode.sheets.plots import AxisLabel
+    from centrode.sheets.plots import Abscissa, AxisLabel, Curve
     from centrode.sheets.sheet import Column, Fact, PointArrows, Sheet
 
 JSON: TypeAlias = dict[str, Any]
@@ -282,9 +282,18 @@ class _BlockWriter:
         words = " ".join(filter(None, (self.spelling.text(label.text), symbol)))
         return factor, {"label": words, "unit": unit}
 
+    def _finer(self, abscissa: Abscissa, curve: Curve, across: float, up: float) -> JSON:
+        """The course of a curve through its samples, where it has places between them."""
+        if abscissa.samples is None:
+            return {}
+        values = np.asarray(curve.values, dtype=float)[abscissa.order]
+        return {"finer": {"x": _numbers(abscissa.values * across), "values": _numbers(values * up)}}
+
     def _plot(self, name: str, plot: Plot) -> Iterator[JSON]:
         across, x = self._axis(plot.abscissa.label)
-        values = _numbers(plot.abscissa.values * across)
+        # what a player follows has one place a sample
+        samples = slice(None) if plot.abscissa.samples is None else plot.abscissa.samples
+        values = _numbers(plot.abscissa.values[samples] * across)
         ends = None if plot.abscissa.ends is None else [_number(x * across) for x in plot.abscissa.ends]
         title = self.spelling.text(plot.title)
         by_drive = plot.abscissa.label.unit in ("rad", "m", "s")
@@ -294,9 +303,12 @@ class _BlockWriter:
                 {
                     "label": self.spelling.text(curve.name),
                     "unit": y["unit"],
-                    "values": _numbers(np.asarray(curve.values, dtype=float)[plot.abscissa.order] * up),
+                    "values": _numbers(
+                        np.asarray(curve.values, dtype=float)[plot.abscissa.order][samples] * up
+                    ),
                     "dashed": curve.approximate,
                     "pen": curve.place,
+                    **self._finer(plot.abscissa, curve, across, up),
                 }
                 for curve in panel.curves
             ]

@@ -69,6 +69,7 @@ class Abscissa:
     cut : (sample) True where a sample is cut off from the initial position
     events : values at which something happens, with its kind
     ends : where the axis begins and ends: dead positions lie beyond the samples; the extreme values if None
+    samples : places of the samples of a motion, where curves have further places between them; None if all are
     """
 
     label: AxisLabel
@@ -78,6 +79,7 @@ class Abscissa:
     cut: NDArray[np.bool_] = field(default_factory=lambda: np.array([], dtype=np.bool_))
     events: tuple[tuple[float, EventKind], ...] = ()
     ends: tuple[float, float] | None = None
+    samples: NDArray[np.intp] | None = None
 
 
 @dataclass(frozen=True)

@@ -444,7 +444,7 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
     coordinates = _Coordinates(run)
     number = coordinates.names.index(name)
     unit = coordinates.units[number]
-    values, speeds = _between_samples(
+    values, speeds, samples = _between_samples(
         run["time"].values,
         [coordinates.course(name, order) for order in range(3)],
         run["occasion_time"].values,
@@ -460,12 +460,14 @@ def _portrait(run: xr.Dataset, title: Title, name: str) -> Plot:
     # a curve that turns at its ends would run along the sides of the picture
     margin = MARGIN * float(np.ptp(values))
     ends = (float(np.min(values)) - margin, float(np.max(values)) + margin) if margin else None
-    abscissa = replace(over_samples(label, values), ends=ends)
+    abscissa = replace(over_samples(label, values), ends=ends, samples=samples)
     return Plot(Sentence("Phase portrait of {name}", name=Name(name)), title, abscissa, ((panel,),))
 
 
-def _between_samples(time: Array, course: Sequence[Array], occasions: Array) -> tuple[Array, Array]:
-    """Values and speeds (n) of a coordinate at its samples, and between them where a chord would be seen.
+def _between_samples(
+    time: Array, course: Sequence[Array], occasions: Array
+) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Values and speeds (n) of a coordinate at its samples, between them where a chord would be seen; samples' places.
 
     Samples follow the time that is simulated, and an oscillation may have only a dozen in each of its periods. Cubics
     with the slopes of both ends lead from sample to sample; not over an occasion, at which a speed or an acceleration
@@ -494,7 +496,7 @@ def _between_samples(time: Array, course: Sequence[Array], occasions: Array) -> 
     shown[:, 0] = True
     shown[bent & ~jumps] = True
     places, rates = (np.append(curve[shown], end[-1]) for curve, end in zip(curves, course[:2], strict=True))
-    return places, rates
+    return places, rates, np.append(np.flatnonzero(np.nonzero(shown)[1] == 0), len(places) - 1)
 
 
 def _energies_plot(run: xr.Dataset, title: Title) -> Plot:

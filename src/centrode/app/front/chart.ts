@@ -9,6 +9,7 @@ export interface ChartLine {
   label: string;
   values: ArrayLike<number>;
   x?: ArrayLike<number>; // its own abscissa
+  finer?: { x: ArrayLike<number>; values: ArrayLike<number> }; // its course through the samples
   dashed?: boolean;
   pen?: number; // its colour; its place among the lines where none is given
 }
@@ -203,8 +204,9 @@ export class Chart {
     const looks = looksOf(data.lines);
     data.lines.forEach((line, k) => {
       let d = "", pen = false, before = NaN;
-      for (let sample = 0; sample < line.values.length; sample += 1) {
-        const value = line.values[sample]!, across = (line.x ?? abscissa)[sample]!, known = Number.isFinite(value) && Number.isFinite(across);
+      const drawn = line.finer ?? { x: line.x ?? abscissa, values: line.values };
+      for (let sample = 0; sample < drawn.values.length; sample += 1) {
+        const value = drawn.values[sample]!, across = drawn.x[sample]!, known = Number.isFinite(value) && Number.isFinite(across);
         if (!line.x && Math.abs(across - before) > 0.5 * Math.abs(high - low)) pen = false; // a turn is over
         before = across;
         if (known) d += `${pen ? "L" : "M"}${digits(x(across))} ${digits(y(value))}`;

@@ -5,7 +5,7 @@ import { Chart, type ChartData } from "./chart";
 import { Icon } from "./icons";
 import type { Motion } from "./motion";
 import { motion, place, readiness, scene, seek, selection, still, tell } from "./state";
-import { fixed, say, sentence, unitText, withUnit } from "./words";
+import { fixed, say, sentence, typeset, unitText, withUnit } from "./words";
 
 interface Course {
   key: string;
@@ -188,7 +188,7 @@ export function MotionPanel() {
 }
 
 export function Missing({ message, repair }: { message: string; repair?: string | null }) {
-  return <p class="missing"><b>{sentence(message)}</b>{repair ? ` ${sentence(repair)}` : ""}</p>;
+  return <p class="missing"><b>{typeset(sentence(message))}</b>{repair ? ` ${typeset(sentence(repair))}` : ""}</p>;
 }
 
 async function copyTable(): Promise<void> {

@@ -116,7 +116,7 @@ function BlockView({ block, among }: { block: Block; among: Block[] }) {
             title: [block.title, block.y?.label].filter(Boolean).join(": "), unit: signed(unit), x: { values: numbers(block.x.values), label: block.x.label, unit: signed(block.x.unit), ends: block.x.ends },
             shaded: (block.shaded ?? []).flatMap(([from, to]) => (from === null || to === null ? [] : [{ from, to }])),
             places: (block.marks ?? []).flatMap((mark) => (mark.at === null ? [] : [{ at: mark.at, label: mark.label }])),
-            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, pen: curve.pen, ...(curve.x ? { x: numbers(curve.x) } : {}) })),
+            lines: block.curves.filter((curve) => curve.unit === unit).map((curve) => ({ label: curve.label || block.y?.label || "", values: numbers(curve.values), dashed: curve.dashed, pen: curve.pen, ...(curve.x ? { x: numbers(curve.x) } : {}), ...(curve.finer ? { finer: { x: numbers(curve.finer.x), values: numbers(curve.finer.values) } } : {}) })),
           })),
         };
       }
@@ -219,7 +219,7 @@ export function ReadinessView() {
         <p class="lacks">{say("loose_points")} {now.loose.map((name) => <button type="button" class="name" onClick={() => { selection.value = [name]; }}>{name}</button>)}</p>
       )}
       {(now.ready ?? (!now.missing.length && !now.loose.length)) && <p class="good">{say("ready")}</p>}
-      {now.limit && <p class="limit">{sentence(now.limit)}</p>}
+      {now.limit && <p class="limit">{typeset(sentence(now.limit))}</p>}
       <Facts facts={now.facts.slice(0, 1)} />
       {now.facts.length > 1 && <details class="more"><summary>{say("more")}</summary><Facts facts={now.facts.slice(1)} /></details>}
     </div>

@@ -402,7 +402,7 @@ export class Picture {
     const chosen = this.scene?.points.some((point) => point.traced) ?? false;
     const traced = new Set(this.scene?.points.filter((point) => !chosen || point.traced).map((point) => point.name));
     for (const { name, near, far } of this.tracks) {
-      const places = motion && traced.has(name) ? Array.from({ length: motion.samples }, (_, k) => motion.place(name, k)) : [];
+      const places = motion && traced.has(name) ? motion.track(name) : [];
       const [front, behind] = paper.paths(places);
       near.classList.toggle("chosen", chosen);
       put(near, "d", front);

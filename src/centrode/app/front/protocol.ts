@@ -215,6 +215,7 @@ export interface Curve {
   unit: string;
   values: (number | null)[];
   x?: (number | null)[];
+  finer?: { x: (number | null)[]; values: (number | null)[] };
   dashed?: boolean;
   pen?: number; // its place among the things of its kind: the same colour in every picture
 }
