@@ -27,6 +27,14 @@ def test_documents_are_written_and_replaced(tmp_path: Path) -> None:
     assert [file.name for file in files[0].parent.iterdir()] == ["one.pdf"]
 
 
+def test_documents_beside_each_other_are_those_made_alone(tmp_path: Path) -> None:
+    report = Report("a", "b", "ru", ())
+    beside = ct.write_report(report, tmp_path / "beside", ("html", "pdf"))
+    alone = [ct.write_report(report, tmp_path / "alone", (kind,))[0] for kind in ("html", "pdf")]
+    assert [file.read_bytes() for file in beside] == [file.read_bytes() for file in alone]
+    assert 'lang="ru"' in beside[0].read_text("utf-8")
+
+
 def test_one_document_that_fails_leaves_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(report: Report, name: str) -> dict[str, bytes]:
         raise KeyboardInterrupt

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TypeAlias
@@ -96,11 +97,16 @@ def write_report(
     """
     check_formats(formats)
     documents: dict[str, bytes] = {}
-    with speaking(report.language):
-        for kind in dict.fromkeys(formats):
+    kinds = list(dict.fromkeys(formats))
+    # typst computes outside of Python: while it lays out a PDF another document is made
+    with speaking(report.language), ThreadPoolExecutor(len(kinds)) as threads:
+        made = []
+        for kind in kinds:
             if said is not None:
                 said(f"{name}.{kind}")
-            documents |= document(report, kind, name)
+            made.append(threads.submit(document, report, kind, name))
+        for one in made:
+            documents |= one.result()
     folder = Path(folder)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)

@@ -699,12 +699,8 @@ def _ranks_of_exact(variables: Array, side: Array, crank: Array, rocker: Array, 
         # beyond one where the linkage does not close all round: it has no such angle, and comes last
         with np.errstate(invalid="ignore"):
             return np.asarray(-np.nan_to_num(np.arccos(cosines)))
-<<<<<<< HEAD
-    return np.asarray(np.abs(_function_errors(variables, side, crank, rocker)).max(axis=1, initial=0.0))
-=======
     errors = np.abs(_function_errors(variables, side, crank, rocker))
     return np.asarray(errors.max(axis=1, initial=0.0))
->>>>>>> house
 
 
 def _unlike(variables: Array, worst: Array, order: IntArray, most: int) -> list[int]:

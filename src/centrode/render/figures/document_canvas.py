@@ -83,7 +83,7 @@ def kept_formulas(*, vector: bool) -> KeptFormulas:
 
 
 class KeptTexts(TextToPath):
-    """Sizes of texts, each measured once; formulas are those of `KeptFormulas`."""
+    """Sizes and letters of texts, each measured and set once; formulas are those of `KeptFormulas`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,6 +96,19 @@ class KeptTexts(TextToPath):
     @functools.lru_cache(KEPT)  # noqa: B019
     def _size(self, text: str, prop: Any, ismath: Any) -> Any:
         return super().get_text_width_height_descent(text, prop, ismath)
+
+    def get_glyphs_with_font(
+        self, font: Any, s: str, glyph_map: Any = None, return_new_glyphs_only: bool = False, **options: Any
+    ) -> Any:
+        """The letters of a text and where they stand, as matplotlib has them."""
+        places, outlines, rectangles = self._letters(font, s, tuple(sorted(options.items())))
+        known = {} if glyph_map is None else glyph_map
+        new = {name: outline for name, outline in outlines.items() if name not in known}
+        return list(places), new if return_new_glyphs_only else {**known, **new}, list(rectangles)
+
+    @functools.lru_cache(KEPT)  # noqa: B019
+    def _letters(self, font: Any, text: str, options: tuple[tuple[str, Any], ...]) -> Any:
+        return super().get_glyphs_with_font(font, text, **dict(options))
 
 
 @functools.cache
