@@ -164,7 +164,7 @@ def test_ranges_too_far_away(start: float, stop: float) -> None:
 
 @pytest.mark.parametrize("samples", [0, -1, 10**9, True])
 def test_impossible_numbers_of_samples(samples: int) -> None:
-    with pytest.raises(ct.InputError, match="samples? (is|are) given; give 1 to 1000000"):
+    with pytest.raises(ct.InputError, match=r"samples? (is|are) given; give 1 to 1000000"):
         ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), samples)
 
 
