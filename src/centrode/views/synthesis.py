@@ -25,7 +25,7 @@ from centrode.sheets.sheet import (
     Table,
 )
 from centrode.sheets.texts import NOTHING, Counted, Name, Number, Sentence, Symbol, Text, Title
-from centrode.views.rounding import ROUNDING
+from centrode.views.columns import ROUNDING
 from centrode.views.synthesis_chapter import synthesis_chapter
 
 if TYPE_CHECKING:
