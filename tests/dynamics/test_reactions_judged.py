@@ -187,6 +187,22 @@ def test_an_inverse_by_blocks_is_that_of_the_whole() -> None:
         assert np.allclose(inverses[8], whole[8], rtol=1e-10)
 
 
+def test_nearly_singular_blocks_in_a_row_are_singular() -> None:
+    """Their inverses multiply up to more than any number: that is no matrix without numbers."""
+    size = 60
+    matrix = np.zeros((size, size, 3))
+    # what is one in the first matrix is rounding of zero in the second, and unknown in the third
+    matrix[np.arange(size), np.arange(size)] = [1.0, EPSILON / 2.0, np.nan]
+    for below in (1, 2):
+        matrix[np.arange(below, size), np.arange(size - below)] = 0.5
+    found = inverse_at(matrix, np.tri(size, dtype=bool) & ~np.tri(size, k=-3, dtype=bool))
+    assert np.isfinite(found.condition[0])
+    assert found.condition[1] == np.inf
+    assert np.isnan(found.condition[2])
+    assert found.useless.tolist() == [False, True, False]
+    assert np.isnan(found.times([1.0] * size)[:, 1:]).all()
+
+
 def test_equations_come_apart_into_blocks() -> None:
     """Of a dyad two moments in two unknowns are left; all other forces follow from one equation each."""
     for name, sizes in (("six-bar-press", [1] * 13 + [2]), ("third-class-triad", [1] * 9 + [6])):

@@ -313,7 +313,7 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given; a part adds its own rules."""
         keys = cls.keys()
-        unknown = unknown_keys(given, keys, cls.model_fields, cls.keys_below())
+        unknown = unknown_keys(given, keys, cls.model_fields, cls.keys_below)
         missing = [
             missing_key(key)
             for key, name in keys.items()
@@ -338,14 +338,14 @@ def unknown_keys(
     given: Mapping[str, Any],
     keys: Collection[str],
     names: Collection[str] = (),
-    below: Mapping[str, str] | None = None,
+    below: Callable[[], Mapping[str, str]] = dict,
 ) -> list[Problem]:
     """The problems of keys that are neither in `keys`, as files spell them, nor in `names`, as Python does.
 
-    `below` has the paths of keys of the tables below, to which a key may belong.
+    `below` gives the paths of keys of the tables below, to which a key may belong; most descriptions need none.
     """
-    paths = below or {}
-    unknown = (key for key in given if key not in keys and key not in names)
+    unknown = [key for key in given if key not in keys and key not in names]
+    paths = below() if unknown else {}
     return [
         Problem(
             _("unknown key {key}").format(key=value_text(key)),

@@ -118,8 +118,61 @@ def test_turns_of_a_crank_are_one_equilibrium_where_a_spring_counts_those_of_the
     assert ct.equilibrium(sprung_four_bar(loads=loads)).sizes["equilibrium"] == 2
 
 
+def test_wheels_that_mesh_keep_their_teeth_within_half_a_round_trip() -> None:
+    """With teeth as 2 to 3 the first wheel is back after three turns: it is told within half of them of its start.
+
+    With q of the first wheel, weights balance where w1 cos q = r w2 cos(b0 - r (q - a0)): there are as many equilibria
+    as that has roots on three turns. Stops of that wheel are as far away as its angle says.
+    """
+    begin, other, ratio = 0.3, 0.1, 2.0 / 3.0
+    parts = {
+        "gravity": [0, -9.81],
+        "frame": {"points": {"O": [0, 0], "P": [3, 0]}},
+        "links": {
+            "a": {"points": {"O": [0, 0], "A": [1, 0]}, "mass": 1, "centre": [0.5, 0], "inertia": 0.1, "angle": begin},
+            "b": {"points": {"P": [0, 0], "B": [2, 0]}, "mass": 2, "centre": [0.3, 0], "inertia": 0.1, "angle": other},
+        },
+        "gears": [{"links": ["a", "b"], "ratio": -ratio}],
+    }  # fmt: skip
+    turned = np.linspace(begin - 3.0 * math.pi, begin + 3.0 * math.pi, 30_001)
+    balance = 0.5 * np.cos(turned) - ratio * 0.6 * np.cos(other - ratio * (turned - begin))
+    roots = turned[:-1][np.signbit(balance[:-1]) != np.signbit(balance[1:])]
+    found = ct.equilibrium(ct.Mechanism(**parts))
+    first, second = (found.angle.sel(link=link).values for link in ("a", "b"))
+    assert np.allclose(np.sort(first), roots, atol=1e-3)
+    assert np.allclose(second, other - ratio * (first - begin), atol=1e-9)
+    stopped = ct.equilibrium(ct.Mechanism(**parts, stops=[{"link": "a", "least": -4.0, "most": 5.0}]))
+    inside = roots[(roots > -4.0) & (roots < 5.0)]
+    resting = stopped.angle.sel(link="a").values
+    assert 2 < len(inside) < len(roots)
+    assert np.allclose(np.sort(resting[(resting > -3.99) & (resting < 4.99)]), inside, atol=1e-3)
+
+
+def test_links_that_turn_together_are_told_in_the_nearest_turns() -> None:
+    """A spring between two rods counts the turns of one against the other alone."""
+    rods = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={
+            "OA": {"length": 1, "mass": 1, "shape": "rod", "angle": 0},
+            "AB": {"length": 0.5, "mass": 2, "shape": "rod", "angle": 0},
+        },
+        loads=[{"kind": "spring", "link": "AB", "relative_to": "OA", "stiffness": 3.0, "free_angle": 0.2}],
+    )
+    found = ct.equilibrium(rods)
+    first, second = (found.angle.sel(link=link).values for link in ("OA", "AB"))
+    assert np.max(np.abs(first)) <= math.pi
+    assert np.max(np.abs(second)) <= 2.0 * math.pi
+    # moments about O of both rods, and about A of the second: each position stands, and no two are one
+    bend = 3.0 * (second - first - 0.2)
+    assert np.allclose(9.81 * (0.5 + 2.0) * np.cos(first), bend, atol=1e-8)
+    assert np.allclose(9.81 * 2 * 0.25 * np.cos(second), -bend, atol=1e-8)
+    places = np.column_stack([second - first, np.cos(first), np.sin(first)])
+    assert len(np.unique(places.round(6), axis=0)) == len(places) == 4
+
+
 def test_a_spring_of_the_crank_counts_its_turns() -> None:
-    """k (q - q0) + w cos q = 0 of one rod on a soft spring: as many equilibria as roots, a turn apart or not."""
+    """k (q - q0) + w cos q = 0 of one rod on a soft spring: roots a turn apart are equilibria of their own."""
     spring = {"name": "k", "kind": "spring", "link": "OA", "stiffness": 1e-3, "free_angle": 0.0}
     found = ct.equilibrium(pendulum(loads=[spring]))
     angles = np.sort(found.angle.sel(link="OA").values)

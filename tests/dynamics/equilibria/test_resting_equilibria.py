@@ -129,5 +129,5 @@ def test_what_stays_nowhere_and_modes_on_stops_are_refused_by_name():
     )
     with pytest.raises(MotionError, match="no equilibrium"):
         ct.equilibrium(sledge)
-    with pytest.raises(InputError, match="rest on no stop"):
+    with pytest.raises(InputError, match="there is 1 equilibrium that rests on no stop, and number 2"):
         ct.modes(rod(stops=[{"link": "OA", "least": -0.5, "most": 2.5}]), equilibrium=2)

@@ -54,6 +54,13 @@ class ConfigurationCurve:
         return self.loaded.at(self.places)
 
     @cached_property
+    def round_trip(self) -> Array:
+        """Whole turns of the angles (coordinates) [rad] on the way round a closed curve; none on an open one."""
+        apart = self.places[-1] - self.places[self.start]
+        turns = 2.0 * np.pi * np.round(apart / (2.0 * np.pi))
+        return np.where(self.loaded.angles & self.closed, turns, 0.0)
+
+    @cached_property
     def force(self) -> Array:
         """Generalised force along the curve (n) [J per rad or per greatest length]."""
         return np.asarray(np.einsum("nc,nc->n", self.equations.force, self.tangents))

@@ -100,7 +100,8 @@ def find_equilibria(loaded: LoadedMechanism) -> Equilibria:
     found = settled_equilibria(loaded, starts)
     if curve is None and not loaded.states:
         found = np.concatenate([found, settled_equilibria(loaded, approached_positions(loaded, starts[::2]))])
-    places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])]))
+    round_trip = np.zeros(loaded.size) if curve is None else curve.round_trip
+    places = within_stops(loaded, _distinct(loaded, found[np.isfinite(found[:, 0])], round_trip))
     if not len(places) and not loaded.mechanism.stops and not loaded.has_friction:
         raise no_equilibrium(loaded, len(starts) if curve is None else len(curve.places))
     count = len(curve.places) if curve is not None else len(starts)
@@ -352,15 +353,26 @@ def within_stops(loaded: LoadedMechanism, places: Array) -> Array:
     return places[np.all((low <= values) & (values <= high), axis=1)]
 
 
-def _distinct(loaded: LoadedMechanism, places: Array) -> Array:
-    """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first."""
+def _distinct(loaded: LoadedMechanism, places: Array, round_trip: Array) -> Array:
+    """Equilibria without repetitions, in the turns nearest to the initial position, the nearest first.
+
+    `round_trip` has whole turns that change nothing together: wheels that mesh come back to their teeth after several
+    turns of each.
+    """
     if not len(places):
         return places
     begin = loaded.start
     turns = 2.0 * np.pi * np.round((places - begin) / (2.0 * np.pi))
     places = np.where(uncounted_angles(loaded), places - turns, places)
+    if round_trip.any():
+        rounds = np.round((places - begin) @ round_trip / (round_trip @ round_trip))
+        places = places - np.outer(rounds, round_trip)
+    # links may turn together with nothing changed too: of positions that are one the nearest is kept
+    apart = np.max(np.abs((places - begin) / loaded.units), axis=1)
+    places = places[np.argsort(apart, kind="stable")]
     kept: list[int] = []
-    for k in np.argsort(position_distance(loaded, places, begin), kind="stable"):
+    for k in range(len(places)):
         if not kept or np.min(position_distance(loaded, places[kept], places[k])) > SAME:
-            kept.append(int(k))
-    return np.asarray(places[kept])
+            kept.append(k)
+    places = places[kept]
+    return np.asarray(places[np.argsort(position_distance(loaded, places, begin), kind="stable")])

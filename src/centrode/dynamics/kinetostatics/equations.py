@@ -634,7 +634,10 @@ def _inverse_of_square(matrix: Matrix, size: int, shape: tuple[int, ...]) -> Inv
                 of_row = functools.reduce(operator.add, map(abs, inverse[column].values()))
                 of_inverse = np.maximum(of_inverse, of_row)
         # the norm of the greatest row sum: no singular values are needed for a bound
-        condition = np.where(regular, norm * of_inverse, np.where(known, np.inf, np.nan))
+        product = norm * of_inverse
+    # many nearly singular blocks one after the other: their inverses are beyond all numbers, and differ by none
+    regular = regular & ~np.isnan(product)
+    condition = np.where(regular, product, np.where(known, np.inf, np.nan))
     return Inverse(matrix, size, size, blocks, of_blocks, condition)
 
 
