@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from centrode.app import service
-from centrode.app.service import LOOPBACK, bound_socket
+from centrode.app.service import LOOPBACK, bound_socket, work_folder_of
 from centrode.errors import InputError
 
 from .served import free_port
@@ -81,6 +81,34 @@ def test_a_server_has_the_usual_port_and_the_next_one_the_next(monkeypatch: pyte
             bound_socket(first)
     with bound_socket() as again:
         assert port_of(again) == first
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        (
+            "nofolder",
+            "nofolder: there is no such folder, and no such file; make the folder first, or end the name of a new "
+            "file in .toml",
+        ),
+        (
+            "crank-rocker",
+            "crank-rocker: there is no such folder, and no such file; write the built-in mechanism first: "
+            "centrode examples crank-rocker --out crank-rocker.toml",
+        ),
+        ("nofolder/press.toml", "nofolder: there is no such folder; check the path"),
+    ],
+)
+def test_a_folder_that_is_not_there_is_refused_before_anything_is_served(
+    name: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError) as refusal:
+        work_folder_of(Path(name))
+    assert str(refusal.value) == message.replace("/", os.sep)
+    assert refusal.value.exit_code == 2
+    (tmp_path / "nofolder").mkdir()
+    assert work_folder_of(Path("nofolder")).folder == (tmp_path / "nofolder").resolve()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="Windows frees ports at once")

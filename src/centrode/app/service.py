@@ -16,6 +16,7 @@ from centrode.app.folders import WorkFolder
 from centrode.app.server import MESSAGE_SIZE, ServerSettings, server_application
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.examples import FOLDERS, example_names
 
 LOOPBACK = "127.0.0.1"
 PORTS = range(8765, 8775)
@@ -27,14 +28,27 @@ WAITING_BROWSERS = 128
 def work_folder_of(file: Path | None) -> WorkFolder:
     """The folder that is named, or that of a file; the working folder by default. InputError for other files."""
     if file is None or file.is_dir():
-        return WorkFolder((file or Path()).resolve())
+        work = WorkFolder((file or Path()).resolve())
+        work.names()  # a folder that cannot be read is refused before anything is served
+        return work
     folder = file.parent.resolve()
     if not folder.is_dir():
-        raise InputError(str(file), _("there is no such folder"), _("check the path"))
+        raise InputError(str(file.parent), _("there is no such folder"), _("check the path"))
+    if not file.suffix and not file.exists():
+        raise InputError(str(file), _("there is no such folder, and no such file"), _how_to_begin(file))
     work = WorkFolder(folder, file.name)
     work.checked_name(file.name)
     work.first_file()
     return work
+
+
+def _how_to_begin(file: Path) -> str:
+    """The repair for a name that is no folder and no file: of a built-in mechanism, how a file is made of it."""
+    if any(str(file) in example_names(kind) for kind in FOLDERS):
+        return _("write the built-in mechanism first: centrode examples {name} --out {name}.toml").format(
+            name=file
+        )
+    return _("make the folder first, or end the name of a new file in .toml")
 
 
 def bound_socket(port: int | None = None) -> socket.socket:
