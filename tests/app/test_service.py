@@ -111,6 +111,21 @@ def test_a_folder_that_is_not_there_is_refused_before_anything_is_served(
     assert work_folder_of(Path("nofolder")).folder == (tmp_path / "nofolder").resolve()
 
 
+def test_a_folder_that_cannot_be_read_is_refused_by_its_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert work_folder_of(tmp_path).names() == []
+
+    def shut(_folder: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    with monkeypatch.context() as patch, pytest.raises(InputError) as refusal:
+        patch.setattr(os, "scandir", shut)
+        work_folder_of(tmp_path)
+    assert refusal.value.where == str(tmp_path.resolve())
+    assert "Permission denied" in refusal.value.what and refusal.value.repair == "check the path"
+
+
 @pytest.mark.skipif(os.name != "posix", reason="Windows frees ports at once")
 def test_the_port_of_a_server_that_has_just_ended_is_free() -> None:
     with bound_socket(0) as listener:

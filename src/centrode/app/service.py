@@ -29,7 +29,10 @@ def work_folder_of(file: Path | None) -> WorkFolder:
     """The folder that is named, or that of a file; the working folder by default. InputError for other files."""
     if file is None or file.is_dir():
         work = WorkFolder((file or Path()).resolve())
-        work.names()  # a folder that cannot be read is refused before anything is served
+        try:
+            work.names()  # a folder that cannot be read is refused before anything is served
+        except InputError as refusal:
+            raise InputError(str(work.folder), refusal.what, _("check the path")) from None
         return work
     folder = file.parent.resolve()
     if not folder.is_dir():
