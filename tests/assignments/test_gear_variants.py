@@ -90,7 +90,7 @@ def test_trains_of_a_table() -> None:
         ("variant,title\n1,a\n", "names no number of the description"),
         ("variant,m [mm]\n1,3\n1,4\n", "occurs twice"),
         ("variant,m [mm]\n", "no variants"),
-        ("variant,m [mm]\n1\n", "cells"),
+        ("variant,m [mm]\n1\n", "it has 1 cell, the headers are 2"),
     ],
 )
 def test_bad_tables_are_refused_as_a_whole(tmp_path: Path, text: str, said: str) -> None:

@@ -185,7 +185,10 @@ def test_a_profile_needs_a_roller() -> None:
         ct.walking_wheel(exchanged(('[mover]\nlegs = 4\npost = "120 mm"\n', "")))
 
 
-@pytest.mark.parametrize("samples", [1, 0, -5, True])
-def test_a_number_of_samples_is_sensible(cam: ct.Cam, samples: int) -> None:
-    with pytest.raises(InputError, match="samples are given"):
+@pytest.mark.parametrize(
+    ("samples", "said"),
+    [(1, "1 sample is"), (0, "0 samples are"), (-5, "-5 samples are"), (True, "True samples are")],
+)
+def test_a_number_of_samples_is_sensible(cam: ct.Cam, samples: int, said: str) -> None:
+    with pytest.raises(InputError, match=f"{said} given"):
         ct.cam_profile(cam, samples)

@@ -35,7 +35,7 @@ def room_for(name: str, samples: int, vary: dict[str, np.ndarray] | None) -> np.
     """Room of the size that the refusal names."""
     with pytest.raises(ct.InputError) as refused:
         ct.motion(ct.example(name), samples, vary=vary, out=np.empty(3))
-    found = re.search(r"3 numbers, (\d+) are needed; make it by numpy.empty\(\1\)", str(refused.value))
+    found = re.search(r"3 numbers; needed: (\d+); make it by numpy.empty\(\1\)", str(refused.value))
     assert found is not None, refused.value
     return np.full(int(found[1]), np.pi)
 

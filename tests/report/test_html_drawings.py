@@ -141,7 +141,9 @@ def test_letters_with_an_edge_are_one_path_and_pens_stand_once() -> None:
     root = Xml.fromstring(drawings.embedded_figure(svg, ""))
     assert [one.tag for one in root] == ["path", "path"]
     assert {one.get("class") for one in root} == {"p0"}
-    assert drawings.style() == f"svg .p0 {{ {edge}; paint-order: stroke }}\n"
+    colours, pens = drawings.style().split("svg ", 1)
+    assert pens == ".p0 { fill: var(--c0); stroke: var(--paper); stroke-width: 2; paint-order: stroke }\n"
+    assert colours.startswith(":root { --c0: #202020; }")
 
 
 def test_a_style_that_would_end_its_rule_stays_where_it_is() -> None:

@@ -45,8 +45,8 @@ def ngettext(singular: str, plural: str, number: object) -> str:
 
     What is no whole number, as somebody may give it in Python, takes the plural.
     """
-    # whole numbers of numpy are none of Python's, and gettext takes only these
-    whole = index(number) if isinstance(number, SupportsIndex) else MANY
+    # whole numbers of numpy are none of Python's, and gettext takes only these; a truth value counts nothing
+    whole = index(number) if isinstance(number, SupportsIndex) and not isinstance(number, bool) else MANY
     return _catalogue.ngettext(singular, plural, whole)
 
 

@@ -8,7 +8,7 @@ import type { Block, Panel, TopicOption } from "./protocol";
 import { arrows, available, hello, options, panelKey, panels, played, playedPlace, readiness, scene, selection, show, topic, waits } from "./state";
 import { fixed, say, sentence, spelled, typeset } from "./words";
 
-const LEAST_SCALE = 1.16, MOST_SCALE = 1.75; // pixels of a point of paper
+const LEAST_SCALE = 1.15, MOST_SCALE = 1.75; // pixels of a point of paper
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
   const holder = useRef<HTMLDivElement>(null);
@@ -30,7 +30,7 @@ export function Markup({ text, className, label }: { text: string; className: st
     element.replaceChildren(...parsed.body.childNodes);
     // What is wider than its place is scrolled, by keyboard too.
     const scroll = (): void => {
-      const wide = element.scrollWidth > element.clientWidth + 1;
+      const wide = element.scrollWidth > element.clientWidth;
       for (const [name, value] of [["tabindex", "0"], ["role", "region"], ["aria-label", label ?? say("formula")]] as const) {
         if (wide) element.setAttribute(name, value);
         else element.removeAttribute(name);
