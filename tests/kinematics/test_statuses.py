@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -162,8 +164,8 @@ def test_ranges_too_far_away(start: float, stop: float) -> None:
         ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), 5, start=start, stop=stop)
 
 
-@pytest.mark.parametrize("samples", [0, -1, 10**9, True])
-def test_impossible_numbers_of_samples(samples: int) -> None:
+@pytest.mark.parametrize("samples", [0, -1, 10**9, True, 2.5, "many"])
+def test_impossible_numbers_of_samples(samples: Any) -> None:
     with pytest.raises(ct.InputError, match=r"samples? (is|are) given; give 1 to 1000000"):
         ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), samples)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import dist, frexp, isfinite, tau
+from numbers import Integral
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -438,7 +439,8 @@ def even_grid(
     `reach` are the nearest limits: the range of a displacement drive where none is requested, and that of any drive
     where the `reachable` range is.
     """
-    if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
+    whole = isinstance(samples, Integral) and not isinstance(samples, bool)
+    if not whole or not 1 <= samples <= reading.SAMPLES:
         raise InputError(
             _("samples"),
             ngettext("{n} sample is given", "{n} samples are given", samples).format(n=samples),
