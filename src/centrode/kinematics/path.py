@@ -439,8 +439,8 @@ def even_grid(
     `reach` are the nearest limits: the range of a displacement drive where none is requested, and that of any drive
     where the `reachable` range is.
     """
-    whole = isinstance(samples, Integral) and not isinstance(samples, bool)
-    if not whole or not 1 <= samples <= reading.SAMPLES:
+    given: Any = samples  # in Python it may be anything
+    if isinstance(given, bool) or not isinstance(given, Integral) or not 1 <= samples <= reading.SAMPLES:
         raise InputError(
             _("samples"),
             ngettext("{n} sample is given", "{n} samples are given", samples).format(n=samples),
