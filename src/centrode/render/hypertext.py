@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-from centrode.render.drawing.looks import INK, Look, screen_figure
+from centrode.render.drawing.looks import INK, ColourLooks, screen_figure
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.files import METADATA, spell_decimals
 from centrode.render.figures.pictures import figures_of
@@ -47,15 +47,15 @@ def figure_html(figure: Figure) -> str:
         canvas: Any = FigureCanvasSVG(figure)
         drawn = io.BytesIO()
         canvas.print_svg(drawn, metadata=METADATA["svg"])
-    looks: dict[str, Look] = {}
+    looks: dict[str, ColourLooks] = {}
 
-    def spelled(look: Look) -> str:
+    def spell(look: ColourLooks) -> str:
         name = f"--centrode-{look.printed[1:]}-{look.dark[1:]}"
         looks[name] = look
         return f"var({name}, {look.printed})"
 
-    ink = spelled(INK)
-    svg = screen_figure(drawn.getvalue().decode(), spelled)
+    ink = spell(INK)
+    svg = screen_figure(drawn.getvalue().decode(), spell)
     dark = "; ".join(f"{name}: {look.dark}" for name, look in looks.items())
     places = ", ".join(f"{one} .centrode-figure" for one in DARK_NOTEBOOKS)
     style = f"<style>{places} {{ {dark} }}</style>"

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import numpy as np
 
-from centrode.errors import CentrodeError, Status
+from centrode.errors import CentrodeError, MotionError, Status
 from centrode.kinematics.motion import motion
+from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.synthesis.cognates import cognates
 from centrode.synthesis.four_bars import (
@@ -292,3 +294,14 @@ def trace_point(
     curve = data.position.sel(point=point).to_numpy()
     met = exact.position.sel(point=point).to_numpy()
     return curve[:, 0] + 1j * curve[:, 1], met[:, 0] + 1j * met[:, 1], box
+
+
+def refuse_poses(linkages: int) -> NoReturn:
+    """Refuse poses through which so many linkages lead, none of which keeps what is required."""
+    what = ngettext(
+        "{n} linkage leads through the poses, but does not keep everything that is required",
+        "{n} linkages lead through the poses, but none keeps everything that is required",
+        linkages,
+    )
+    repair = _("loosen a constraint, or change a pose")
+    raise MotionError("[synthesis]", what.format(n=linkages), repair)

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from centrode.errors import MotionError
-from centrode.locale import _, ngettext
-from centrode.synthesis.answers import Answer, SynthesisResults, four_bar_answer
+from centrode.locale import _
+from centrode.synthesis.answers import Answer, SynthesisResults, four_bar_answer, refuse_poses
 from centrode.synthesis.burmester import (
     Dyads,
     Poses,
@@ -67,13 +67,7 @@ def pose_answers(
     progress(0.3)
     answers = _choose_answers(task, poses, dyads, pairs, progress, stop)
     if not answers:
-        what = ngettext(
-            "{n} linkage leads through the poses, but does not keep everything that is required",
-            "{n} linkages lead through the poses, but none keeps everything that is required",
-            len(pairs),
-        )
-        repair = _("loosen a constraint, or change a pose")
-        raise MotionError("[synthesis]", what.format(n=len(pairs)), repair)
+        refuse_poses(len(pairs))
     return SynthesisResults(
         task, tuple(answers), poses.places, examined=len(pairs), complete=not stop(), curves=curves
     )

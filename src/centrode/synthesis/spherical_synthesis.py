@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.kinematics.motion import motion
-from centrode.locale import _, ngettext
+from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import read_quantity
-from centrode.synthesis.answers import CHECKED_PLACES, Answer, SynthesisResults, proved_defects
+from centrode.synthesis.answers import CHECKED_PLACES, Answer, SynthesisResults, proved_defects, refuse_poses
 from centrode.synthesis.candidate_refinement import Progress, fit_lanes
 from centrode.synthesis.four_bars import Array, Booleans
 from centrode.synthesis.function_generation import lessen_greatest
@@ -553,13 +553,7 @@ def _pose_answers(task: SynthesisTask, progress: Progress, stop: Callable[[], bo
         if len(answers) == wanted.answers:
             break
     if not answers:
-        what = ngettext(
-            "{n} linkage leads through the poses, but does not keep everything that is required",
-            "{n} linkages lead through the poses, but none keeps everything that is required",
-            len(pairs),
-        )
-        repair = _("loosen a constraint, or change a pose")
-        raise MotionError("[synthesis]", what.format(n=len(pairs)), repair)
+        refuse_poses(len(pairs))
     return SynthesisResults(
         task, tuple(answers), _map(poses.places), examined=len(pairs), complete=not stop()
     )

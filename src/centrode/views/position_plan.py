@@ -40,7 +40,7 @@ def _facts(plan: PositionPlan) -> list[Fact]:
 
     reached = int((plan.positions["status"].values == Status.OK).sum())
     first = Sentence("position {number}", number=Number(0, digits="d"))
-    facts = [Fact(Sentence("positions"), _reached(len(values), reached))]
+    facts = [Fact(Sentence("positions"), _count_of_reached(len(values), reached))]
     if plan.link:
         at_rest = Sentence(
             "extreme position of {link} at {value}", link=Name(plan.link), value=shown(plan.zero)
@@ -58,7 +58,7 @@ def _facts(plan: PositionPlan) -> list[Fact]:
     return [*facts, Fact(Sentence("range"), Sentence("a full turn") if plan.closed else ends)]
 
 
-def _reached(positions: int, reached: int) -> Text:
+def _count_of_reached(positions: int, reached: int) -> Text:
     count = Number(positions, digits="d")
     if reached == positions:
         return Sentence("{count}, all reached", count=count)

@@ -467,7 +467,7 @@ Rows: TypeAlias = Sequence[Sequence[Number]]
 EPSILON = 2.0**-52
 
 
-class Block(NamedTuple):
+class EquationBlock(NamedTuple):
     """Equations that are solved together, once the unknowns before them are known.
 
     Attributes
@@ -483,7 +483,7 @@ class Block(NamedTuple):
 
 # by the places alone: mechanisms of one structure have these in common
 @functools.lru_cache(maxsize=64)
-def blocks_of(size: int, places: frozenset[tuple[int, int]]) -> tuple[Block, ...]:
+def blocks_of(size: int, places: frozenset[tuple[int, int]]) -> tuple[EquationBlock, ...]:
     """The least blocks of equations that matrices with numbers in these places come apart into.
 
     An Assur group hangs on others that it loads, and within a group most forces follow from one equation each: of a
@@ -497,13 +497,15 @@ def blocks_of(size: int, places: frozenset[tuple[int, int]]) -> tuple[Block, ...
     owners = match(rows_of)
     if len(owners) < size:
         everything = tuple(range(size))
-        return (Block(everything, everything, ((),) * size),)
+        return (EquationBlock(everything, everything, ((),) * size),)
     row_of = {column: row for row, column in owners.items()}
     needs = {column: columns_of[row_of[column]] for column in range(size)}
     blocks = []
     for columns in in_order(strong_components(needs), needs):
         before = [tuple(other for other in needs[column] if other not in columns) for column in columns]
-        blocks.append(Block(tuple(row_of[column] for column in columns), tuple(columns), tuple(before)))
+        blocks.append(
+            EquationBlock(tuple(row_of[column] for column in columns), tuple(columns), tuple(before))
+        )
     return tuple(blocks)
 
 
@@ -523,7 +525,7 @@ class Inverse:
     matrix: Matrix
     size: int
     width: int
-    blocks: tuple[Block, ...]
+    blocks: tuple[EquationBlock, ...]
     of_blocks: Sequence[Rows]
     condition: Array
     pseudo: tuple[Mask, Array] | None = None

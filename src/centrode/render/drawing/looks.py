@@ -54,7 +54,7 @@ _SVG = "{http://www.w3.org/2000/svg}"
 RGB = tuple[float, float, float]
 
 
-class Look(NamedTuple):
+class ColourLooks(NamedTuple):
     """A colour as it is drawn, "#rrggbb", and on a light and on a dark screen."""
 
     printed: str
@@ -89,42 +89,42 @@ def dark_area(colour: RGB) -> RGB:
 
 
 @functools.cache
-def line_look(colour: str) -> Look:
+def line_look(colour: str) -> ColourLooks:
     """How a line or a mark looks."""
     rgb = _rgb(colour)
     light = SCREEN_PALETTE.get(colour, (colour,))[0]
     dark = _hex(dark_line(rgb))
     if _is_faint(rgb):
-        return Look(colour, colour, dark)
-    return Look(colour, _darkened(light, LINES), _lightened(dark, LINES))
+        return ColourLooks(colour, colour, dark)
+    return ColourLooks(colour, _dark_enough(light, LINES), _light_enough(dark, LINES))
 
 
 @functools.cache
-def area_look(colour: str) -> Look:
+def area_look(colour: str) -> ColourLooks:
     """How an area looks: the ground, a tint of it, or as a line does."""
     if colour == LIGHT_PAPER:
-        return Look(colour, LIGHT_PAPER, DARK_PAPER)
+        return ColourLooks(colour, LIGHT_PAPER, DARK_PAPER)
     rgb = _rgb(colour)
-    return Look(colour, colour, _hex(dark_area(rgb))) if _is_tint(rgb) else line_look(colour)
+    return ColourLooks(colour, colour, _hex(dark_area(rgb))) if _is_tint(rgb) else line_look(colour)
 
 
 @functools.cache
-def letter_look(colour: str) -> Look:
+def letter_look(colour: str) -> ColourLooks:
     """How letters look; their edge has the colour of the ground."""
     if colour == LIGHT_PAPER:
         return area_look(colour)
     own = line_look(colour)
-    return Look(colour, _darkened(own.light, LETTERS), _lightened(own.dark, LETTERS))
+    return ColourLooks(colour, _dark_enough(own.light, LETTERS), _light_enough(own.dark, LETTERS))
 
 
-INK = Look("#000000", LIGHT_INK, DARK_INK)
+INK = ColourLooks("#000000", LIGHT_INK, DARK_INK)
 """The look of what is black on paper, and of what has no colour of its own."""
 
 
 # Figures whose colours are those of a screen.
 
 
-def set_looks(drawing: Xml.Element, spelled: Callable[[Look], str]) -> None:
+def set_looks(drawing: Xml.Element, spell: Callable[[ColourLooks], str]) -> None:
     """Spell every colour of a drawing in SVG anew; what has no colour of its own is ink."""
     drawing.set("fill", "currentColor")
     styles: dict[tuple[str, bool], str] = {}
@@ -132,29 +132,29 @@ def set_looks(drawing: Xml.Element, spelled: Callable[[Look], str]) -> None:
         letters = element.tag.removeprefix(_SVG) in LETTERED
         if style := element.get("style"):
             if (style, letters) not in styles:
-                styles[style, letters] = _spelled_style(style, spelled, letters)
+                styles[style, letters] = _spelled_style(style, spell, letters)
             element.set("style", styles[style, letters])
         for key in ("fill", "stroke", "stop-color"):
             if _COLOUR.fullmatch(own := element.get(key, "")):
-                element.set(key, spelled(_look(key, own, letters)))
+                element.set(key, spell(_look(key, own, letters)))
 
 
-def _spelled_style(style: str, spelled: Callable[[Look], str], letters: bool) -> str:
+def _spelled_style(style: str, spell: Callable[[ColourLooks], str], letters: bool) -> str:
     return _DECLARATION.sub(
-        lambda one: f"{one['key']}{one['colon']}{spelled(_look(one['key'], one['colour'], letters))}", style
+        lambda one: f"{one['key']}{one['colon']}{spell(_look(one['key'], one['colour'], letters))}", style
     )
 
 
-def screen_figure(svg: str, spelled: Callable[[Look], str]) -> str:
+def screen_figure(svg: str, spell: Callable[[ColourLooks], str]) -> str:
     """A figure in SVG whose colours are spelled anew, without a declaration before it."""
     Xml.register_namespace("", _SVG[1:-1])
     Xml.register_namespace("xlink", "http://www.w3.org/1999/xlink")
     drawing = Xml.fromstring(svg)
-    set_looks(drawing, spelled)
+    set_looks(drawing, spell)
     return Xml.tostring(drawing, encoding="unicode")
 
 
-def either_look(look: Look) -> str:
+def either_look(look: ColourLooks) -> str:
     """A colour in a page whose `color-scheme` is that of the screen: its paper is `--paper`."""
     if look.printed == LIGHT_PAPER:
         return "var(--paper)"
@@ -167,7 +167,7 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
-def _look(key: str, colour: str, letters: bool) -> Look:
+def _look(key: str, colour: str, letters: bool) -> ColourLooks:
     colour = colour.lower()
     if letters:
         return letter_look(colour)
@@ -184,7 +184,7 @@ def _is_faint(colour: RGB) -> bool:
     return saturation < GREY and contrast(_hex(colour), LIGHT_PAPER) < LINES
 
 
-def _darkened(colour: str, least: float) -> str:
+def _dark_enough(colour: str, least: float) -> str:
     """A colour dark enough to be seen on light paper."""
     hue, lightness, saturation = colorsys.rgb_to_hls(*_rgb(colour))
     while contrast(colour, LIGHT_PAPER) < least:
@@ -193,7 +193,7 @@ def _darkened(colour: str, least: float) -> str:
     return colour
 
 
-def _lightened(colour: str, least: float) -> str:
+def _light_enough(colour: str, least: float) -> str:
     """A colour light enough to be seen on dark paper."""
     hue, lightness, saturation = colorsys.rgb_to_hls(*_rgb(colour))
     while contrast(colour, DARK_STAGE) < least:

@@ -209,15 +209,15 @@ def _recolour_patch(patch: Patch) -> None:
 
 def _ground(colour: Any) -> Any:
     """The colour of an area on the dark ground; none stays none."""
-    return _turned(colour, dark_area)
+    return _recolour(colour, dark_area)
 
 
 def _light(colour: Any) -> Any:
     """The colour of a line or of letters on the dark ground; none stays none."""
-    return _turned(colour, dark_line)
+    return _recolour(colour, dark_line)
 
 
-def _turned(colour: Any, by: Callable[[RGB], RGB]) -> Any:
+def _recolour(colour: Any, by: Callable[[RGB], RGB]) -> Any:
     if isinstance(colour, str) and colour in ("none", "auto"):
         return colour
     red, green, blue, alpha = to_rgba(colour)

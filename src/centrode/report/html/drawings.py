@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Xml
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.render.drawing.looks import INK, LIGHT_PAPER, Look, set_looks
+from centrode.render.drawing.looks import INK, LIGHT_PAPER, ColourLooks, set_looks
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
@@ -66,7 +66,7 @@ class Drawings:
     letters: dict[str, str] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     pens: dict[str, str] = field(default_factory=dict)
-    looks: dict[Look, str] = field(default_factory=dict)
+    looks: dict[ColourLooks, str] = field(default_factory=dict)
     count: int = 0
 
     def embedded_figure(self, svg: bytes, label: str) -> str:
@@ -90,7 +90,7 @@ class Drawings:
         _join_edges(whole)
         _join_strokes(whole)
         _group_by_clip(whole)
-        set_looks(whole, self._spelled)
+        set_looks(whole, self._spell_colour)
         self._share_pens(whole)
         self._share_texts(whole)
         return _written(whole)
@@ -118,7 +118,7 @@ class Drawings:
         pens = "".join(f"svg .{name} {{ {pen} }}\n" for pen, name in self.pens.items())
         return (colours if self.looks else "") + pens
 
-    def _spelled(self, look: Look) -> str:
+    def _spell_colour(self, look: ColourLooks) -> str:
         """A colour of a figure: the paper or the ink of the page, or a variable."""
         if look.printed == LIGHT_PAPER:
             return "var(--paper)"
