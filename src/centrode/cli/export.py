@@ -143,7 +143,7 @@ def export(
 
 
 def _kind(formats: tuple[str, ...], languages: Mapping[str, bool]) -> str:
-    """The one format that is asked for; InputError where several are, as one file is written."""
+    """The one format that is requested; InputError where several are, as one file is written."""
     # in the order of the help, as click does not tell that of the command line
     named = {f"--format {kind}": kind for kind in formats}
     named |= {f"--{kind}": kind for kind in LANGUAGES if languages[kind]}

@@ -111,6 +111,7 @@ def uncounted_angles(loaded: LoadedMechanism) -> npt.NDArray[np.bool_]:
     """Which coordinates are angles whose whole turns change no load, whatever the others are."""
     if counts_drive(loaded):
         return np.zeros_like(loaded.angles)
+    # a turn that counts changes a value by radians, one that does not by rounding: anything between tells them apart
     turned = np.vstack([loaded.start, loaded.start + 2.0 * np.pi * np.eye(loaded.size)])
     # wheels that mesh close by the values of their angles
     left, _rows = loaded.closures_at(turned)

@@ -13,8 +13,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
-from centrode.render.drawing.colours import PALETTE
-
 LIGHT_PAPER, DARK_PAPER = "#ffffff", "#17181a"
 """Grounds of pages."""
 LIGHT_INK, DARK_INK = "#1c1c1c", "#e4e4e4"
@@ -43,8 +41,6 @@ SCREEN_PALETTE = {
     "#000000": (LIGHT_INK, DARK_INK),
 }
 """The palette on light and on dark ground; `motion.css` and the workbench have the same hues."""
-assert set(SCREEN_PALETTE) == {one.lower() for one in PALETTE}
-
 LETTERED = {"g", "text", "tspan"}
 """Elements that colour letters; whatever else is drawn has a style of its own."""
 _DECLARATION = re.compile(r"(?P<key>fill|stroke|stop-color)(?P<colon>:\s*)(?P<colour>#[0-9a-fA-F]{6})\b")
