@@ -65,7 +65,7 @@ def test_limits_on_grid_lines(reached: list[bool], said: str) -> None:
     ("reached", "said"), [(12, "12, all reached"), (0, "12, none reached"), (5, "12, 5 of them reached")]
 )
 def test_positions_of_a_plan(reached: int, said: str) -> None:
-    assert SAY(position_plan._reached(12, reached)) == said
+    assert SAY(position_plan._count_of_reached(12, reached)) == said
 
 
 def test_the_range_between_limits_is_chosen_by_what_is_at_hand() -> None:
