@@ -94,7 +94,7 @@ benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
 
-snapshots: $(FOR_TESTS) ## compare what the program gives for every example with its record, to 1e-12
+snapshots: $(FOR_TESTS) ## compare what every command gives with its record, to 1e-12
 	$(BIN)/python -m tools.snapshots check --jobs 2
 
 house: $(BASE) ## counts of modules, names, lines and imports

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tools.snapshots.__main__ import main
 from tools.snapshots.artefacts import Artefact, Digest
+from tools.snapshots.cases import RECORDED
 from tools.snapshots.comparison import BITS, DIFFERS, NUMBERS, Verdict, compare, digests_of
 from tools.snapshots.files import table_artefact, text_artefact
 from tools.snapshots.record import FOLDER, read_record, write_record
@@ -121,13 +122,17 @@ SAMPLE = (
     "check",
     "--only",
     "crank-rocker",
-    "spherical-four-bar",
+    "spherical-crank-rocker",
     "face",
     "--commands",
     "check",
     "angles",
     "dir(centrode)",
 )
+
+
+def test_the_record_holds_what_it_is_compared_with() -> None:
+    assert sorted(file.stem for file in FOLDER.iterdir()) == sorted(RECORDED)
 
 
 def test_a_sample_of_the_record_holds() -> None:

@@ -1,7 +1,8 @@
 """Digests of what the program gives: `python -m tools.snapshots write`, `check`, `texts FOLDER`.
 
-`write` makes the record, `check` compares with it (exit code 1 at a difference), `texts` writes everything as plain
-text into a folder, so that two trees can be compared with diff. Another tree is taken with PYTHONPATH=OTHER/src.
+`write` makes the record, `check` compares with it (exit code 1 at a difference). `texts` writes what every example
+gives as plain text into a folder, so that two trees can be compared with diff. Another tree is taken with
+PYTHONPATH=OTHER/src.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from tools.snapshots.artefacts import TOLERANCE
-from tools.snapshots.cases import QUICK
+from tools.snapshots.cases import RECORDED
 from tools.snapshots.comparison import BITS, DIFFERS, compare
-from tools.snapshots.record import FOLDER, read_record, recorded_subjects
+from tools.snapshots.record import FOLDER, read_record
 from tools.snapshots.runs import of_commands, subject_digests, subjects, write_digests, write_texts
 
 INTERRUPTED = 130
@@ -28,16 +29,15 @@ Answer = TypeVar("Answer")
 def main(words: Sequence[str] | None = None) -> int:
     """Do what the words of the command line say; returns the exit code."""
     given = _parsed(words)
-    known = subjects()
+    known = subjects() if given.task == "texts" else list(RECORDED)
     unknown = [name for name in given.only if name not in known]
     if unknown:
         print(f"unknown: {', '.join(unknown)}; there are {', '.join(known)}", file=sys.stderr)
         return 2
-    chosen = [name for name in known if name in given.only] or (list(QUICK) if given.quick else known)
+    chosen = [name for name in known if name in given.only] or known
     try:
         return int({"write": _write, "check": _check, "texts": _texts}[given.task](given, chosen))
     except KeyboardInterrupt:
-        print("interrupted; `write --missing` goes on", file=sys.stderr)
         return INTERRUPTED
 
 
@@ -46,18 +46,20 @@ def _parsed(words: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("task", choices=("write", "check", "texts"))
     parser.add_argument("folder", nargs="?", type=Path, help="of `texts`: where they are written")
     parser.add_argument(
-        "--only", nargs="+", default=[], metavar="SUBJECT", help="examples, face, help, refusals, studies"
+        "--only",
+        nargs="+",
+        default=[],
+        metavar="SUBJECT",
+        help=f"{', '.join(RECORDED)}; `texts`: any example",
     )
     parser.add_argument(
         "--commands", nargs="+", default=[], metavar="COMMAND", help="of `check` and `texts`: only these"
     )
-    parser.add_argument("--quick", action="store_true", help=f"only {', '.join(QUICK)}")
     parser.add_argument("--jobs", type=int, default=1, help="processes at once")
     parser.add_argument("--bits", action="store_true", help="of `check`: equal numbers are not enough")
     parser.add_argument(
         "--tolerance", type=float, default=TOLERANCE, help="of `check`: part of the scale of numbers"
     )
-    parser.add_argument("--missing", action="store_true", help="of `write`: only what has no record yet")
     parser.add_argument("--record", type=Path, default=FOLDER, help="folder of the record")
     given = parser.parse_args(words)
     if (given.task == "texts") != (given.folder is not None):
@@ -68,11 +70,6 @@ def _parsed(words: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _write(given: argparse.Namespace, chosen: list[str]) -> int:
-    if given.missing:
-        chosen = [name for name in chosen if name not in recorded_subjects(given.record)]
-    elif not given.only and not given.quick:
-        for name in set(recorded_subjects(given.record)) - set(chosen):
-            (given.record / f"{name}.txt").unlink()
     write = functools.partial(write_digests, folder=given.record)
     for subject, count in _progress(write, chosen, given.jobs):
         print(f"{subject}: {count} artefacts", flush=True)
@@ -81,10 +78,6 @@ def _write(given: argparse.Namespace, chosen: list[str]) -> int:
 
 def _check(given: argparse.Namespace, chosen: list[str]) -> int:
     counts: collections.Counter[str] = collections.Counter()
-    if not given.only and not given.quick:
-        for name in sorted(set(recorded_subjects(given.record)) - set(chosen)):
-            print(f"{DIFFERS:15s} {name}: it was recorded and is missing")
-            counts[DIFFERS] += 1
     digests_of = functools.partial(subject_digests, commands=given.commands)
     for subject, (digests, labels) in _progress(digests_of, chosen, given.jobs):
         recorded = {

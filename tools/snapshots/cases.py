@@ -16,15 +16,14 @@ FEW = ("--samples", "25")
 """Samples in the other languages, whose numbers are spelled anew but are the same."""
 SIZE = ("--frames", "2", "--size", "160x120")
 
-WHOLE = (
-    "crank-rocker", "five-bar-two-drives", "single-cylinder-engine", "six-bar-press", "spherical-crank-rocker",
-    "valve-cam", "walking-wheel-three-legs",
-)  # fmt: skip
-"""Examples that enter every room: their pictures, reports and animations are recorded in every language.
+EVERY_ROOM = ("crank-rocker", "five-bar-two-drives", "spherical-crank-rocker", "valve-cam")
+"""Examples that enter every room and are recorded: their pictures, reports and animations in every language.
 
-Of the others pictures and animations are recorded in English, reports in English and by turns in another language.
+Of the others `texts` has pictures and animations in English, reports in English and by turns in another language.
 """
-QUICK = ("crank-rocker", "five-bar-two-drives", "spherical-crank-rocker", "valve-cam", "help", "face")
+BESIDE = ("face", "help", "refusals", "studies")
+"""Subjects that are no examples."""
+RECORDED = (*EVERY_ROOM, *BESIDE)
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ def linkage_cases(name: str, text: str, language: str) -> Iterator[Case]:
     first = language == "en"
     few = () if first else FEW
     spelled: tuple[str, ...] = {"en": (), "ru": ("--decimal-comma",), "uk": ("--xlsx",)}[language]
-    plain = () if first or name in WHOLE else ("--no-figures",)
+    plain = () if first or name in EVERY_ROOM else ("--no-figures",)
     out = ("--out", "out", *plain)
     at = ("--at", _instant(tables))
     for command in ("check", "describe", "equations", "rotatability", "examples"):
@@ -72,7 +71,7 @@ def linkage_cases(name: str, text: str, language: str) -> Iterator[Case]:
         yield Case("report", ["report", name, "--out", "out"])
     if first:
         yield Case("animate", ["animate", name, *SIZE, "--show", "paths,velocities,accelerations"])
-    elif name in WHOLE:
+    elif name in EVERY_ROOM:
         yield Case("animate", ["animate", name, *SIZE, "--show", "velocities", "--dark"])
 
 
@@ -81,7 +80,7 @@ def cam_cases(name: str, _text: str, language: str) -> Iterator[Case]:
     few = () if language == "en" else FEW
     spelled: tuple[str, ...] = {"en": (), "ru": ("--decimal-comma",), "uk": ("--xlsx",)}[language]
     yield Case("examples", ["examples", name])
-    plain = () if not few or name in WHOLE else ("--no-figures",)
+    plain = () if not few or name in EVERY_ROOM else ("--no-figures",)
     yield Case("cam", ["cam", name, "--out", "out", *spelled, *few, *plain])
     yield Case("cam groove", ["cam", name, "--groove", *few])
     yield Case("cam laws", ["cam", name, "--laws", "--out", "out", "--no-figures", *few])
@@ -132,7 +131,7 @@ def refusal_cases() -> Iterator[Case]:
 
 def _speaks(name: str, language: str) -> bool:
     """Whether the report of an example is recorded in a language."""
-    return name in WHOLE or language == LANGUAGES[0] or language == LANGUAGES[1 + sum(name.encode()) % 2]
+    return name in EVERY_ROOM or language == LANGUAGES[0] or language == LANGUAGES[1 + sum(name.encode()) % 2]
 
 
 def _instant(tables: Mapping[str, Any]) -> str:

@@ -37,8 +37,3 @@ def read_record(folder: Path, subject: str) -> dict[str, Digest]:
             found[digest.removeprefix(f"{SAME} ")] if digest.startswith(SAME) else Digest.parse(digest)
         )
     return found
-
-
-def recorded_subjects(folder: Path) -> list[str]:
-    """Subjects that have a record."""
-    return sorted(file.stem for file in folder.glob("*.txt"))

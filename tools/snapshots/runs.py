@@ -19,8 +19,10 @@ import centrode as ct
 from centrode.cli.main import COMMANDS, main
 from tools.snapshots.artefacts import Artefact, Digest
 from tools.snapshots.cases import (
+    BESIDE,
+    EVERY_ROOM,
     LANGUAGES,
-    WHOLE,
+    RECORDED,
     Case,
     cam_cases,
     help_cases,
@@ -33,18 +35,16 @@ from tools.snapshots.files import file_artefact, text_artefact
 from tools.snapshots.record import write_record
 from tools.snapshots.stand_ins import seen_instead_of_drawn
 
-BESIDE = ("face", "help", "refusals", "studies")
-"""Subjects that are no examples."""
 SETTINGS = ("LC_ALL", "LC_MESSAGES", "LANG", "CENTRODE_DEBUG", "COLUMNS")
 VERSION = re.compile(rf"(?<![\w.]){re.escape(ct.__version__)}(?![\w.])")
 
 
 def subjects() -> list[str]:
-    """Every example, and what is recorded beside them; those that take longest and tell most come first."""
+    """Every example, and what is recorded beside them; those that are recorded come first."""
     names = [
         line.split()[0] for line in _printed(["examples"]).splitlines() if re.match(r"[a-z][\w-]+  ", line)
     ]
-    return [*WHOLE, *BESIDE, *sorted(set(names) - set(WHOLE))]
+    return [*RECORDED, *sorted(set(names) - set(EVERY_ROOM))]
 
 
 def artefacts_of(subject: str, commands: Collection[str] = ()) -> Iterator[tuple[str, Artefact]]:
