@@ -112,6 +112,18 @@ class Plane:
             return meet_circles(one, other, root)
         return meet_circle_and_line(one, other, root)
 
+    def directions_at(self, m: Namespace, locus: PlaneCircle | Line, place: Vector) -> tuple[Vector, ...]:
+        if isinstance(locus, Line):
+            x, y = locus.direction
+            return (-y, x), (x, y)
+        arm = subtract(place, locus.centre)
+        squared = dot(arm, arm)
+        # a circle without a radius is square to every direction
+        round_ = m.less(0.0, squared)
+        scale = m.where(round_, 1.0 / m.sqrt(squared), 0.0)
+        x, y = m.where(round_, scale * arm[0], 1.0), scale * arm[1]
+        return (x, y), (-y, x)
+
     def implied_place(
         self,
         one: PlaneCircle | Line,

@@ -150,6 +150,21 @@ class Sphere:
                 return locus.centre  # a stop is a place already
         return meet_circles_on_sphere(one.centre, one.half, other.centre, other.half, root)
 
+    def directions_at(self, m: Namespace, locus: SphereCircle, place: Vector) -> tuple[Vector, ...]:
+        out = tangent(place, locus.centre)
+        squared = dot(out, out)
+        # about its own place, or the opposite one, a circle is square to every direction
+        first, second = basis(m, place)
+        scale = m.where(m.less(0.0, squared), 1.0 / m.sqrt(squared), 0.0)
+        x, y = scale * dot(out, first), scale * dot(out, second)
+        x = m.where(m.less(0.0, squared), x, 1.0)
+        # the place itself is square to both: along it lies what rounding does to its unit length
+        return (
+            linear_combination((x, first), (y, second)),
+            linear_combination((-y, first), (x, second)),
+            place,
+        )
+
     def implied_place(
         self,
         one: SphereCircle,

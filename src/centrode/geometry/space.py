@@ -128,6 +128,9 @@ class Space(Protocol):
     def meet(self, one: Locus, other: Locus, root: Root, divisor: Root) -> Place:
         """Where two loci meet; circles of links stand first."""
 
+    def directions_at(self, m: Namespace, locus: Locus, place: Place) -> tuple[Place, ...]:
+        """Orthonormal directions at a place of a locus, the one square to the locus first; of plain numbers."""
+
     def implied_place(
         self, one: Locus, other: Locus, place: Place, root: Number, hold: Callable[[Number], Number]
     ) -> Place | None:
