@@ -15,6 +15,9 @@ A mechanism is a file ("press.toml"), the name of a built-in one ("six-bar-press
 in reading order in `__init__.pyi`; each is imported when it is first used.
 """
 
+import centrode.interruption as _interruption  # noqa: F401 (what follows takes its time)
+
+# isort: split
 import lazy_loader
 
 from centrode.notebook import register as _show_in_notebooks

@@ -73,6 +73,83 @@ def test_a_signal_leaves_nothing(folder: Path, command: tuple[str, ...], number:
     assert list(folder.iterdir()) == []
 
 
+COMMAND_LINE = """
+import signal, sys
+from importlib.abc import MetaPathFinder
+
+MODULE = sys.argv.pop()
+
+class Interrupts(MetaPathFinder):
+    # Ctrl-C when a module is looked for; where Python lets nothing out, it comes when an object goes
+    def find_spec(self, name, path, target=None):
+        if name == MODULE:
+            signal.raise_signal(signal.SIGINT)
+        if name + "!" == MODULE:
+            Goes()
+
+class Goes:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Interrupts())
+sys.argv[0] = "centrode"
+from centrode.__main__ import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize(
+    ("module", "said"),
+    [
+        ("lazy_loader", b""),
+        ("centrode.cli.main", b""),
+        ("centrode.kinematics.check", b"interrupted\n"),
+        ("centrode.kinematics.check!", b"interrupted\n"),
+    ],
+)
+def test_ctrl_c_while_modules_are_imported(folder: Path, module: str, said: bytes) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", COMMAND_LINE, "check", "kite", module],
+        cwd=folder, capture_output=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", said)
+
+
+REPORT = """
+import signal, sys, time
+from centrode.report import pdf_document
+from centrode.__main__ import main
+
+def typesetting(report):
+    def work():
+        print("at work", flush=True)
+        time.sleep(600)
+    return work
+
+pdf_document.typesetting = typesetting
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.argv = ["centrode", "report", "kite", "--chapters", "data", "--format", "pdf", "--out", "report"]
+sys.exit(main())
+"""
+
+
+@posix
+def test_ctrl_c_while_a_document_is_set(folder: Path) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", REPORT], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"at work\n"
+        process.send_signal(signal.SIGINT)
+        try:
+            out, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert (process.returncode, out, err) == (130, b"", b"interrupted\n")
+    assert list(folder.iterdir()) == []
+
+
 @posix
 def test_what_a_kill_left_is_removed_by_the_next_run(centrode: Centrode, folder: Path) -> None:
     with at_work(folder, *RUN) as process:

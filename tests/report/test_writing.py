@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
+import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -28,11 +31,42 @@ def test_documents_are_written_and_replaced(tmp_path: Path) -> None:
 
 
 def test_documents_beside_each_other_are_those_made_alone(tmp_path: Path) -> None:
-    report = Report("a", "b", "ru", ())
+    chosen = ct.ReportOptions(chapters=("structure", "equations"))
+    report = ct.report(ct.example("crank-rocker"), chosen, language="ru")
     beside = ct.write_report(report, tmp_path / "beside", ("html", "pdf"))
     alone = [ct.write_report(report, tmp_path / "alone", (kind,))[0] for kind in ("html", "pdf")]
     assert [file.read_bytes() for file in beside] == [file.read_bytes() for file in alone]
-    assert 'lang="ru"' in beside[0].read_text("utf-8")
+    page = beside[0].read_text("utf-8")
+    assert 'lang="ru"' in page
+    assert page.count("<math") > 10
+
+
+@pytest.mark.parametrize("moment", ["making the page", "waiting for the PDF"])
+def test_what_is_interrupted_waits_for_no_document(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    """Typst cannot be stopped: it is left alone with its document, and nothing is written."""
+    go_on, finished = threading.Event(), threading.Event()
+
+    def interrupted(*_anything: object) -> dict[str, bytes]:
+        raise KeyboardInterrupt
+
+    def typesetting(report: Report) -> Callable[[], bytes]:
+        return lambda: (go_on.wait(60), finished.set(), b"%PDF-")[-1]
+
+    monkeypatch.setattr(importlib.import_module("centrode.report.pdf_document"), "typesetting", typesetting)
+    formats = {"pdf": files.FORMATS["pdf"]}
+    if moment == "making the page":
+        formats["html"] = interrupted
+    else:
+        monkeypatch.setattr(threading.Thread, "join", interrupted)
+    monkeypatch.setattr(files, "FORMATS", formats)
+    with pytest.raises(KeyboardInterrupt):
+        ct.write_report(REPORT, tmp_path, tuple(formats))
+    assert not finished.is_set()
+    go_on.set()
+    assert finished.wait(60)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_one_document_that_fails_leaves_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

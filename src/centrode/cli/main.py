@@ -6,6 +6,7 @@ Exit codes: 0 done; 2 wrong input or usage; 3 the mechanism cannot do what was a
 
 from __future__ import annotations
 
+import _thread
 import gc
 import os
 import signal
@@ -42,6 +43,7 @@ from centrode.cli.translation import language_option, translate_command, wished_
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.files.inputs import guard_inputs
+from centrode.interruption import INTERRUPTED, end_at_interruption, raise_at_interruption
 from centrode.locale import _, choose_language_of_process, mark
 from centrode.optional_packages import held_back
 from centrode.topics import order
@@ -84,7 +86,7 @@ COMMANDS: tuple[click.Command, ...] = tuple(
 )
 """Those of the topics among the others, in the order that `centrode --help` lists them."""
 
-FAULT, INTERRUPTED, READER_GONE = 70, 130, 141
+FAULT, READER_GONE = 70, 141
 
 
 class ReadingOrder(click.Group):
@@ -120,17 +122,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         reconfigure: Callable[..., Any] | None = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(errors="replace")
-    choose_language_of_process(wished_language(arguments))
     try:
+        raise_at_interruption()
+        choose_language_of_process(wished_language(arguments))
         # xarray imports dask and pint at its first array, which takes a short command a fifth of its time; workers
         # admit the one, units of a text the other
-        with _termination_as_interruption(), _rare_collection(), _only_what_is_needed(ours):
+        with (
+            _no_interruption_lost(ours),
+            _termination_as_interruption(),
+            _rare_collection(),
+            _only_what_is_needed(ours),
+        ):
             result = _run(build_app(), list(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()
     except BaseException as failure:
         return _ending(failure)
     finally:
+        if ours:
+            end_at_interruption()
         _drop_unwritable_output()
     return result if isinstance(result, int) else 0
 
@@ -152,6 +162,28 @@ def _termination_as_interruption() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+@contextmanager
+def _no_interruption_lost(ours: bool) -> Iterator[None]:
+    """Interrupt once more where Ctrl-C comes to a place that Python goes on behind, such as the end of an import."""
+    if not ours:
+        yield
+        return
+    before = sys.unraisablehook
+
+    def interrupt_again(ignored: sys.UnraisableHookArgs) -> None:
+        if issubclass(ignored.exc_type, KeyboardInterrupt):
+            # from another thread, once this function has returned: what is raised in it is lost as well
+            threading.Timer(0.01, _thread.interrupt_main).start()
+        else:
+            before(ignored)
+
+    sys.unraisablehook = interrupt_again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
 
 
 @contextmanager

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Thread
 from typing import TypeAlias
 
 import lazy_loader
@@ -32,6 +33,32 @@ _html, _pdf, _word, _latex, _notebook = (
 
 Documents: TypeAlias = Mapping[str, bytes]
 """Paths of files within a folder -> what they hold."""
+PATIENCE = 0.2
+"""Seconds after which a thread that waits looks for Ctrl-C, as some systems wake none that waits."""
+
+
+def _typeset(report: Report, name: str) -> Callable[[], Documents]:
+    """What waits for the PDF of a report. Typst computes outside of Python, so others are made in the meantime.
+
+    Nothing can stop typst: who does not wait, as Ctrl-C makes it, leaves it its thread, which keeps no process alive.
+    """
+    typesetting, made = _pdf().typesetting(report), Future[bytes]()
+
+    def work() -> None:
+        try:
+            made.set_result(typesetting())
+        except BaseException as failure:
+            made.set_exception(failure)
+
+    thread = Thread(target=work, daemon=True)
+    thread.start()
+
+    def wait() -> Documents:
+        while thread.is_alive():
+            thread.join(PATIENCE)
+        return {f"{name}.pdf": made.result()}
+
+    return wait
 
 
 def _latex_files(report: Report, name: str) -> Documents:
@@ -41,14 +68,16 @@ def _latex_files(report: Report, name: str) -> Documents:
     return {f"{name}.tex": source} | {f"{folder}/{figure}": content for figure, content in figures.items()}
 
 
-FORMATS: Mapping[str, Callable[[Report, str], Documents]] = {
+FORMATS: Mapping[str, Callable[[Report, str], Documents | Callable[[], Documents]]] = {
     "html": lambda report, name: {f"{name}.html": _html().html_page(report)},
-    "pdf": lambda report, name: {f"{name}.pdf": _pdf().pdf_document(report)},
+    "pdf": _typeset,
     "docx": lambda report, name: {f"{name}.docx": _word().word_document(report)},
     "tex": _latex_files,
     "ipynb": lambda report, name: {f"{name}.ipynb": _notebook().notebook_document(report)},
 }
-"""What makes the documents NAME of a report, by the ending of their file."""
+"""What makes the documents NAME of a report, by the ending of their file: at once, or as something that waits."""
+FIRST = "pdf"
+"""That which is begun before others, as it is made beside them."""
 DEFAULT_FORMATS = ("html", "pdf")
 """Those that are made where nobody chooses."""
 NEEDS = {"docx": "pypandoc", "tex": "pypandoc"}
@@ -98,15 +127,14 @@ def write_report(
     check_formats(formats)
     documents: dict[str, bytes] = {}
     kinds = list(dict.fromkeys(formats))
-    # typst computes outside of Python: while it lays out a PDF another document is made
-    with speaking(report.language), ThreadPoolExecutor(len(kinds)) as threads:
-        made = []
-        for kind in kinds:
+    with speaking(report.language):
+        begun = {}
+        for kind in sorted(kinds, key=FIRST.__ne__):
             if said is not None:
                 said(f"{name}.{kind}")
-            made.append(threads.submit(document, report, kind, name))
-        for one in made:
-            documents |= one.result()
+            begun[kind] = _begin(report, kind, name)
+        for kind in kinds:
+            documents |= begun[kind]()
     folder = Path(folder)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -138,10 +166,16 @@ def lacking(library: str) -> InputError:
 
 def document(report: Report, kind: str, name: str = "report") -> Documents:
     """The files of a document; InputError where a library is missing."""
+    return _begin(report, kind, name)()
+
+
+def _begin(report: Report, kind: str, name: str) -> Callable[[], Documents]:
+    """What gives the files of a document when they are made."""
     try:
-        return FORMATS[kind](report, name)
+        made = FORMATS[kind](report, name)
     except ModuleNotFoundError as missing:
         library = (missing.name or "").partition(".")[0]
         if library == "centrode":
             raise
         raise lacking(library) from missing
+    return made if callable(made) else lambda: made

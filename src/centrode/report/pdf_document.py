@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import singledispatchmethod
@@ -15,6 +15,7 @@ from typing import Any
 import typst
 
 from centrode.locale import LANGUAGES, _, chosen_language, speaking
+from centrode.model.page_standards import Standard
 from centrode.quantities import UNIT_SYMBOLS
 from centrode.render.document.blocks import (
     Block,
@@ -468,15 +469,24 @@ def pdf_document(report: Report) -> bytes:
     Typst reads nothing but what is handed to it, and no fonts but its own. Both standards forbid letters that no font
     has: a document with such letters of a user's is a plain PDF.
     """
+    return typesetting(report)()
+
+
+def typesetting(report: Report) -> Callable[[], bytes]:
+    """What makes the PDF of a report: it speaks no language any more, and may work beside what speaks another one."""
     with speaking(report.language):
         source = Source(report)
-    beside = {**style_files(report), **source.files}
+        beside = {**style_files(report), **source.files}
+    return functools.partial(_typeset, source, beside, report.standard)
+
+
+def _typeset(source: Source, beside: Mapping[str, bytes], standard: Standard) -> bytes:
 
     def layout_of(text: str) -> Layout:
         inputs: Any = {**document_files(text, source.head), **beside}
         return Layout.read(typst.Compiler(input=inputs, ignore_system_fonts=True).eval(EXPRESSION))
 
-    page = page_style(report.standard)
+    page = page_style(standard)
     text = well_placed(source.text, layout_of, page.top * POINTS, (297.0 - page.top - page.bottom) * POINTS)
     files: Any = {**document_files(text, source.head), **beside}
     # a compiler with the same input as the one that was asked for places finds what that laid out
