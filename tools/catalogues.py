@@ -24,6 +24,8 @@ from babel.messages.pofile import read_po, write_po
 ROOT = Path(__file__).parent.parent
 CODE = ROOT / "src" / "centrode"
 CLICK = ROOT / "tools" / "click_messages.py"
+LEAST_REPEATED = 20
+"""Letters from which a text that repeats itself is a slip and no name or sign."""
 KEYWORDS = {"_": None, "mark": None, "Sentence": None, "ngettext": (1, 2), "Counted": (1, 2)}
 SLAVIC = (
     "nplurals=3; plural=(n%10==1 && n%100!=11 ? 0 : n%10>=2 && n%10<=4 && (n%100<10 || n%100>=20) ? 1 : 2);"
@@ -178,6 +180,7 @@ def faults(language: str) -> Iterator[str]:
         if language in TRANSLATED and not complete(message):
             yield f"{'fuzzy' if message.fuzzy else 'untranslated'}: {forms(message.id)[0]!r}"
         yield from wrong_fields(message)
+        yield from repeated_translations(message)
     path = mo_path(language)
     if not path.exists() or path.read_bytes() != compiled(language, catalogue):
         yield "the .mo file is not compiled from it"
@@ -192,6 +195,14 @@ def wrong_fields(message: Message) -> Iterator[str]:
             yield f"field {{{field}}} is not in {forms(message.id)[0]!r}"
         for field in sorted(needed - fields(text)):
             yield f"field {{{field}}} is missing in the translation of {forms(message.id)[0]!r}"
+
+
+def repeated_translations(message: Message) -> Iterator[str]:
+    """Translations that hold the whole of themselves more than once, as a slip of the editor leaves them."""
+    for text in filter(None, forms(message.string)):
+        # a text of a period lies within its double before its end
+        if len(text) >= LEAST_REPEATED and (text + text).find(text, 1) < len(text):
+            yield f"the translation of {forms(message.id)[0]!r} repeats itself"
 
 
 def fields(text: str) -> set[str]:

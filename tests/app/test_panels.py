@@ -11,6 +11,8 @@ from centrode.app.frames import read_frame
 from centrode.app.panel_titles import shown_topics
 from centrode.model.examples import example_text
 
+from .test_screen_sentences import faults_of
+
 EXAMPLES = {
     "region": "five-bar-two-drives",
     "simulate": "five-bar-pendulum",
@@ -37,6 +39,7 @@ def test_every_panel_opens(ask, topic):
     panel = read_frame(panel)[0] if isinstance(panel, bytes) else panel
     said = json.dumps(panel, ensure_ascii=False)
     assert "error" not in panel, said
+    assert faults_of(panel) == []
     if scene["topics"].get(topic.name) is True:
         assert panel.get("blocks") or panel.get("missing"), said
     else:

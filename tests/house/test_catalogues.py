@@ -44,6 +44,16 @@ def translate(tool: ModuleType, *, length: str = "длина {length} не го�
         tool.write(language, catalogue)
 
 
+def test_a_translation_that_repeats_itself_is_a_fault(tool: ModuleType) -> None:
+    """A slip of the editor; a short word of two equal halves is none."""
+    translate(tool, length="длина {length} не годится " * 2)
+    assert tool.compile_all() == 0
+    assert tool.check() == 1
+    translate(tool, length="{length}{length}")
+    assert tool.compile_all() == 0
+    assert tool.check() == 0
+
+
 def test_a_complete_catalogue_passes_and_speaks(tool: ModuleType) -> None:
     translate(tool)
     assert tool.compile_all() == 0

@@ -21,11 +21,12 @@ from centrode.app.gear_bench import gear_answer
 from centrode.app.motion_frames import motion_answer
 from centrode.app.move_drags import place_on_way, way_of
 from centrode.app.operations import apply_operations
-from centrode.app.panel_titles import failure_texts
+from centrode.app.panel_titles import failure_texts, with_panel_titles
 from centrode.app.panels import panel_of, topic_list, topics_of
 from centrode.app.patches import Patch
 from centrode.app.readiness import readiness_of
 from centrode.app.scene import scene_of
+from centrode.app.screen_sentences import SCREEN_SENTENCES
 from centrode.app.sketch import SketchParts
 from centrode.app.synthesis_bench import synthesis_answers, synthesis_state
 from centrode.app.templates import template_list
@@ -98,7 +99,7 @@ class Workbench:
         number = message.get("id")
         number = number if isinstance(number, int) and not isinstance(number, bool) else 0
         language = message.get("language")
-        with speaking(language if language in LANGUAGES else "en"):
+        with speaking(language if language in LANGUAGES else "en", SCREEN_SENTENCES):
             try:
                 name = message.get("do")
                 handle = self._names.get(name) if isinstance(name, str) else None
@@ -108,9 +109,8 @@ class Workbench:
             except UnknownText as unknown:
                 return {"id": number, "unknown": unknown.digest}
             except CentrodeError as failure:
-                where = f"{failure.where}: " if failure.where else ""
                 what, repair = failure_texts(failure)
-                return {"id": number, "error": {"message": where + what, "repair": repair}}
+                return {"id": number, "error": {"message": what, "repair": repair}}
             except (RecursionError, MemoryError):
                 what = _("this takes more memory than the workbench has")
                 return {"id": number, "error": {"message": what, "repair": ""}}
@@ -276,8 +276,7 @@ class Workbench:
             document.require_prepared()
             header, arrays = motion_answer(document.require_mechanism(), count)
         except CentrodeError as failure:
-            what, repair = failure_texts(failure)
-            return {"missing": what, "repair": repair}
+            return {"missing": with_panel_titles(failure.what), "repair": with_panel_titles(failure.repair)}
         return frame_bytes({"id": message.get("id", 0), **header}, arrays)
 
     def example(self, message: Message) -> Answer:

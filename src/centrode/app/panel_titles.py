@@ -9,6 +9,7 @@ from centrode.locale import _
 from centrode.topics.registry import TOPICS
 from centrode.topics.topic import Topic
 
+_OPTION = re.compile(r"(?<![\w-])--([a-z]{2})")
 _COMMAND = re.compile(r"\bcentrode ([a-z]+(?:-[a-z]+)*)")
 
 
@@ -31,5 +32,13 @@ def with_panel_titles(sentence: str) -> str:
 
 
 def failure_texts(failure: CentrodeError) -> tuple[str, str]:
-    """What is wrong, and the repair, as the workbench says them."""
-    return with_panel_titles(failure.what), with_panel_titles(failure.repair)
+    """Where and what is wrong, and the repair, as the workbench says them."""
+    where = f"{failure.where}: " if failure.where else ""
+    return _without_dashes(with_panel_titles(where + failure.what)), _without_dashes(
+        with_panel_titles(failure.repair)
+    )
+
+
+def _without_dashes(sentence: str) -> str:
+    """A sentence whose options are named as the keys, or the fields of a panel, that they are there."""
+    return _OPTION.sub(r"\1", sentence)

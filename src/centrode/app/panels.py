@@ -97,8 +97,8 @@ def _options(topic: Topic) -> Iterator[dict[str, Any]]:
 
 
 def _label(sentence: str) -> str:
-    """What an option means, in the reader's language: names of options are those of the command."""
-    return _(sentence).rstrip(".")
+    """What a field of the panel means, in the reader's language."""
+    return with_panel_titles(_(sentence)).rstrip(".")
 
 
 def topics_of(document: Document) -> dict[str, bool | str]:
@@ -122,7 +122,7 @@ def _concern(topic: Topic, description: Described) -> bool | str:
         if topic.concerns is None or topic.concerns(description):
             return True
     except CentrodeError as failure:
-        return failure.what
+        return with_panel_titles(failure.what)
     needs = topic.panel.needs if topic.panel is not None else ""
     return _(needs) if needs else _(CONCERNS_NOTHING)
 
@@ -152,12 +152,11 @@ def panel_of(
         )
         motions, arrays = player_frames(render.panel_motions(sheet))
     except CentrodeError as failure:
-        where = f"{failure.where}: " if failure.where else ""
         what, repair = failure_texts(failure)
         return {
             "topic": topic.name,
             "title": _(topic.title),
-            "missing": where + what,
+            "missing": what,
             "repair": repair,
         }, {}
     return {"topic": topic.name, "title": _(topic.title), "blocks": blocks, "motions": motions}, arrays
@@ -256,6 +255,8 @@ def _value(option: Option, name: str, value: Any) -> Any:
             raise InputError(name, _("expected one of {words}").format(words=", ".join(option.words)))
         return value
     several = isinstance(option, InstantsOption) or (isinstance(option, ValueOption) and option.several)
+    if several and isinstance(value, str):  # of a field, in which semicolons part them
+        value = [part.strip() for part in value.split(";") if part.strip()]
     values: Sequence[Any] = value if isinstance(value, list) else [value]
     if len(values) > (INSTANTS if several else 1):
         raise InputError(name, _("give at most {most}").format(most=INSTANTS if several else 1))

@@ -23,7 +23,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from centrode.app.folders import WorkFolder
-from centrode.app.workers import ProcessRunner, Reply, Runner
+from centrode.app.workers import ProcessRunner, Reply, Runner, StartFailure
 from centrode.locale import LANGUAGES, _, chosen_language, mark, speaking
 
 STATIC = Path(__file__).parent / "static"
@@ -38,6 +38,13 @@ HOSTS = ("127.0.0.1", "localhost")
 WARMING = "[points]\nA = [0, 0]\nB = [1, 0]\n[frame]\npoints = ['A']\n[links.AB]\n[[drives]]\nlink = 'AB'\nspeed = 1\n"
 TOO_LONG = mark("this takes too long"), mark("give fewer samples, or a shorter range")
 INTERRUPTED = mark("the computation was interrupted"), mark("try again")
+NOT_STARTED = (
+    mark("the process that computes does not start: {reason}"),
+    mark(
+        "install centrode with all that it needs and start the workbench again; another text, or a page that is loaded "
+        "again, tries once more"
+    ),
+)
 NO_MESSAGE = mark("the server does not know this request"), ""
 TOO_LARGE = mark("this file is too large for a description"), ""
 REFUSED = (
@@ -315,6 +322,8 @@ async def _file(runner: Runner, message: Mapping[str, Any]) -> Response:
         reply = await runner.answer(message, SLOW)
     except TimeoutError:
         return JSONResponse(_error_of(message, TOO_LONG), 503, HEADERS)
+    except StartFailure as failure:
+        return JSONResponse(_error_of(message, NOT_STARTED, reason=failure.reason), 503, HEADERS)
     except (EOFError, OSError):
         return JSONResponse(_error_of(message, INTERRUPTED), 503, HEADERS)
     if isinstance(reply, str):
@@ -406,6 +415,8 @@ class Conversation:
                 task.cancel()
                 raise
             return json.dumps({"id": _number(message), "superseded": True})
+        except StartFailure as failure:
+            return json.dumps(_error_of(message, NOT_STARTED, reason=failure.reason))
         except (EOFError, OSError):
             return json.dumps(_error_of(message, INTERRUPTED))
         finally:
@@ -420,15 +431,16 @@ class Conversation:
                 await self.socket.send_bytes(reply)
 
 
-def _error_of(message: Mapping[str, Any], error: tuple[str, str]) -> dict[str, Any]:
+def _error_of(message: Mapping[str, Any], error: tuple[str, str], **values: str) -> dict[str, Any]:
     """The answer that says what went wrong with a message, in its language."""
-    return {"id": _number(message), "error": _spoken_error(error, message.get("language"))}
+    return {"id": _number(message), "error": _spoken_error(error, message.get("language"), **values)}
 
 
-def _spoken_error(error: tuple[str, str], language: object) -> dict[str, str]:
+def _spoken_error(error: tuple[str, str], language: object, **values: str) -> dict[str, str]:
     with speaking(language if isinstance(language, str) and language in LANGUAGES else "en"):
         what, repair = error
-        return {"message": _(what), "repair": _(repair) if repair else ""}
+        said = _(what).format(**values) if values else _(what)
+        return {"message": said, "repair": _(repair) if repair else ""}
 
 
 def _preferred_language(request: Request) -> str:

@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import threading
+import traceback
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -17,6 +18,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, Protocol, TypeAlias
 
+from centrode.app.documents import digest_of
 from centrode.app.folders import WorkFolder
 from centrode.topics.topic import Lazily
 
@@ -33,6 +35,27 @@ GREATEST_MEMORY = 450_000_000
 """Bytes after which a process makes room for another one."""
 ENDING = 2.0
 """Seconds that a process has to end."""
+STARTS = 3
+"""Processes that are started for one message; after that it is said that none starts."""
+READY, FAILED = b"r", b"f"
+"""The first word of a process: it answers from now on, or it cannot, with the reason behind."""
+
+
+REASON = 500
+"""Letters of the reason for which a process does not start."""
+
+
+class StartFailure(EOFError):
+    """No process starts that would compute.
+
+    Attributes
+    ----------
+    reason : what the process said last, or how it ended
+    """
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(reason)
 
 
 class Runner(Protocol):
@@ -58,7 +81,13 @@ def serve_messages(connection: Connection, work: WorkFolder) -> None:
     # Ctrl-C reaches all processes of a terminal, but the server ends this one
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_server, daemon=True).start()
-    bench = WORKBENCH(work)
+    try:
+        bench = WORKBENCH(work)
+    except Exception as fault:
+        said = "".join(traceback.format_exception_only(fault)).strip()[-REASON:]
+        connection.send_bytes(FAILED + said.encode(errors="replace"))
+        return
+    connection.send_bytes(READY)
     while True:
         try:
             message = json.loads(connection.recv_bytes())
@@ -106,25 +135,51 @@ class ProcessRunner:
     work: WorkFolder
     _process: Any = None
     _connection: Connection | None = None
+    _is_ready: bool = False
     _ended: bool = False
+    _refused: tuple[str, StartFailure] | None = None
     _guard: threading.Lock = field(default_factory=threading.Lock)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(max_workers=1))
 
     async def answer(self, message: Mapping[str, Any], limit: float) -> Reply:
-        """The answer of a message; TimeoutError after so many seconds, and the process is stopped."""
+        """The answer of a message; TimeoutError after so many seconds, and the process is stopped.
+
+        Raises StartFailure where no process starts, for other messages about the same text at once.
+        """
         async with self._turn:
             if self._ended:
                 raise EOFError
-            content = json.dumps(message).encode()
+            subject = _subject(message)
+            if self._refused is not None and subject and self._refused[0] == subject:
+                raise self._refused[1]
+            self._refused = None
+            try:
+                return await self._answer_by_another(json.dumps(message).encode(), limit)
+            except StartFailure as failure:
+                self._refused = subject, failure
+                raise
+
+    async def _answer_by_another(self, content: bytes, limit: float) -> Reply:
+        """The answer of the process, or of one that is started in its place."""
+        failed = 0
+        interrupted = False
+        while True:
             try:
                 return await self._answer_within(content, limit)
             except TimeoutError:
                 raise
+            except StartFailure:
+                failed += 1
+                await asyncio.to_thread(self.stop)
+                if failed == STARTS or self._ended:
+                    raise
             except (EOFError, OSError):
                 # it made room, or the system stopped it: once more in a new one
                 await asyncio.to_thread(self.stop)
-                return await self._answer_within(content, limit)
+                if interrupted:
+                    raise
+                interrupted = True
 
     async def _answer_within(self, content: bytes, limit: float) -> Reply:
         # a process begins in the thread too: the server answers others meanwhile
@@ -139,7 +194,24 @@ class ProcessRunner:
             raise
 
     def _exchange_in_turn(self, content: bytes) -> Reply:
-        return _exchange(self._process_connection(), content)
+        connection = self._process_connection()
+        if not self._is_ready:
+            self._meet(connection)
+        return _exchange(connection, content)
+
+    def _meet(self, connection: Connection) -> None:
+        """Hear the first word of a process; StartFailure where it has none, or cannot compute."""
+        try:
+            word = connection.recv_bytes()
+        except (EOFError, OSError):
+            process = self._process
+            if process is None:  # stopped by somebody
+                raise
+            process.join(ENDING)
+            raise StartFailure(f"exit code {process.exitcode}") from None
+        if word[:1] != READY:
+            raise StartFailure(word[1:].decode(errors="replace"))
+        self._is_ready = True
 
     def _process_connection(self) -> Connection:
         with self._guard:
@@ -158,9 +230,14 @@ class ProcessRunner:
         here: Connection
         here, there = context.Pipe()
         process = context.Process(target=serve_messages, args=(there, self.work), daemon=True)
-        with _block_interrupts():
-            process.start()
-        there.close()
+        try:
+            with _block_interrupts():
+                process.start()
+        except (EOFError, OSError) as fault:
+            here.close()
+            raise StartFailure(str(fault) or type(fault).__name__) from fault
+        finally:
+            there.close()
         self._process, self._connection = process, here
         return here
 
@@ -184,6 +261,7 @@ class ProcessRunner:
             self._process.kill()
             self._process.join(ENDING)
         self._process = self._connection = None
+        self._is_ready = False
 
 
 @contextmanager
@@ -199,6 +277,14 @@ def _block_interrupts() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _subject(message: Mapping[str, Any]) -> str:
+    """The digest of the text that a message is about; empty of one that is about none."""
+    text, digest = message.get("text"), message.get("digest")
+    if isinstance(text, str):
+        return digest_of(text)
+    return digest if isinstance(digest, str) else ""
 
 
 def _exchange(connection: Connection, content: bytes) -> Reply:

@@ -109,7 +109,7 @@ function Lost() {
 }
 
 function App() {
-  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" && <p class="refusal">{refusal || "centrode"}</p>}</main>;
+  if (!hello.value) return <main class="opening" aria-busy="true">{online.value === "lost" ? <p class="refusal">{refusal || "centrode"}</p> : said.value.bad && <p class="refusal" role="alert">{said.value.text}</p>}</main>;
   return (
     <div class={editing.value ? "bench live with-text" : "bench live"}>
       <TopBar />

@@ -350,7 +350,11 @@ async function greet(): Promise<void> {
   // what was chosen here, else the language of the command, else that of the browser
   chosen ??= query.get("language") ?? navigator.language.slice(0, 2).toLowerCase();
   const answer = await connection.ask({ do: "hello", language: chosen }, "hello");
-  if (answer === SUPERSEDED || answer.error) return;
+  if (answer === SUPERSEDED) return;
+  if (answer.error) {
+    refused(answer.error);
+    return;
+  }
   hello.value = answer as Hello;
   words.value = answer.words;
   units.value = answer.units ?? {};
