@@ -41,7 +41,10 @@ def set_number(patch: Patch, operation: Operation) -> None:
         return
     number = read_field(sketch, value, kind)
     if path in sketch.marks["locked"]:
-        raise InputError(path, _("this length is locked"), _("unlock it first"))
+        raise InputError(str(place[1]), _("this length is locked"), _("unlock it first"))
+    if place[-1] == "length" and not number > 0.0:
+        what = _("{key} must be positive, got {value}").format(key="length", value=value_text(value))
+        raise InputError(str(place[1]), what)
     mechanism = sketch.document.mechanism
     geometric = place[0] in ("links", "frame", "guides", "drives", "points") and kind in (
         "length",
