@@ -82,16 +82,20 @@ def _add_measured_link(patch: Patch, names: list[str | None], ends: list[Vector]
 
 
 def add_point(patch: Patch, operation: Operation) -> None:
-    """Give a link a further point."""
+    """Give a link a further point: a new one at a place, or one that is there already and is hinged to it."""
     sketch = patch.drawn_sketch()
-    link, place = operation.get("link"), patch.place_of(operation, "at")
+    link, point = operation.get("link"), operation.get("point")
     if not isinstance(link, str) or link not in sketch.links:
         raise InputError("", _("unknown link {name}").format(name=value_text(link)))
-    point = operation.get("point")
     name = next(patch.free_names()) if point is None else patch.point_of(operation)
+    if point is not None and name not in sketch.places:
+        raise InputError(name, _("its place is not known: correct the description first"))
+    place = patch.place_of(operation, "at") if point is None else sketch.places[name]
     if name in sketch.links[link]:
         raise InputError("", _("link {link} has this point already").format(link=link))
     points = sketch.links[link]
+    if f"links.{link}.length" in sketch.marks["locked"]:
+        patch.set_mark("locked", f"links.{link}.length", False)  # of more than two points none is the length
     if follows_from_points(sketch, link):
         if point is None:
             patch.new_point(place, name)
