@@ -97,6 +97,69 @@ def test_a_point_on_a_link_makes_a_plate():
     assert start.sel(point="C").values == pytest.approx([1.0, 1.0], abs=1e-5)
 
 
+def test_a_link_from_another_link_is_one_step():
+    """Both ends on links: each becomes a point of that link, and what is refused leaves no point behind."""
+    before = patch_of(FOUR_BAR, {"do": "add_link", "at": [0, 3], "to": [4, 4]})
+    line = {"do": "add_link", "at": [2.5, 1.25], "to": [2, 3.5], "from_link": "BC", "to_link": "EF"}
+    patch = patch_of(before.text, line)
+    sketch = SketchParts(patch.document)
+    assert sketch.links["BC"] == ("B", "C", "G") and sketch.links["EF"] == ("E", "F", "H")
+    assert sketch.links["GH"] == ("G", "H")
+    assert [sketch.places[name] for name in "GH"] == [(2.5, 1.25), (2.0, 3.5)]
+    with pytest.raises(InputError, match="both belong to BC"):
+        apply_operation(before, {**line, "to_link": "BC"})
+    assert before.text == patch_of(FOUR_BAR, {"do": "add_link", "at": [0, 3], "to": [4, 4]}).text
+
+
+def test_a_joint_slides_along_a_link():
+    """The lever of a shaper: it turns as the formula of its triangle says, by atan2 of the pin from its pivot."""
+    patch = patch_of(
+        "",
+        {"do": "add_link", "at": [0, 0], "to": [0.3, 0]},
+        {"do": "add_link", "at": [0, -0.5], "to": [0.6, 0.5]},
+        {"do": "add_guide", "at": [0.3, 0], "point": "B", "on": "CD", "direction": [-0.6, -1.0]},
+        {"do": "set_row", "object": "AB", "row": "drive", "on": True},
+        {"do": "set_row", "object": "C", "row": "ground", "on": True},
+    )
+    assert patch.document.tables["guides"] == [{"point": "B", "on": "CD", "direction": [1, 0]}]
+    turns = ct.motion(ct.parse_mechanism(patch.text), 25)
+    pin, tip = (turns.position.sel(point=name).values for name in "BD")
+    expected = [math.atan2(y + 0.5, x) for x, y in pin]
+    assert [math.atan2(y + 0.5, x) for x, y in tip] == pytest.approx(expected, abs=1e-9)
+    # in a file with lengths the line is written in the axes of the link
+    text = patch_of(example_text("crank-rocker"), {"do": "add_link", "at": [1, -3], "to": [2, 3]}).text
+    patch = patch_of(text, {"do": "add_guide", "at": [1, 0], "direction": [1, 6], "point": "A", "on": "CE"})
+    (guide,) = patch.document.tables["guides"]
+    along, across = 1 / math.sqrt(37), 6 / math.sqrt(37)
+    assert guide["through"] == pytest.approx([3 * across, 3 * along], abs=1e-4)
+
+
+def test_a_frame_pin_holds_the_slot_of_a_link():
+    """An oscillating slide: the rod BC goes through the pin D at each angle of the crank."""
+    patch = patch_of(
+        "",
+        {"do": "add_link", "at": [0, 0], "to": [0.3, 0]},
+        {"do": "add_link", "at": [0.3, 0], "to": [2, 0], "from_point": "B"},
+        {"do": "set_row", "object": "AB", "row": "drive", "on": True},
+    )
+    text = patch.text.replace("C = [2, 0]", "C = [2, 0]\nD = [1, 0]").replace('["A"]', '["A", "D"]')
+    patch = patch_of(text, {"do": "add_guide", "at": [1, 0], "direction": [1, 0], "point": "D", "on": "BC"})
+    turns = ct.motion(ct.parse_mechanism(patch.text), 25)
+    b, c = (turns.position.sel(point=name).values for name in "BC")
+    across = (c[:, 0] - b[:, 0]) * (0 - b[:, 1]) - (c[:, 1] - b[:, 1]) * (1 - b[:, 0])
+    assert abs(across).max() < 1e-9
+
+
+def test_a_point_on_a_slanted_rod_keeps_its_ratio_after_many_drags():
+    """Coordinates are rounded at each of them: the middle stays within that rounding."""
+    text = patch_of(FOUR_BAR, {"do": "add_point", "link": "BC", "at": [2.5, 1.25]}).text
+    for k in range(8):
+        to = [4 + 0.3 * math.cos(0.37 * k), 2 + 0.2 * math.sin(0.37 * k)]
+        text = patch_of(text, {"do": "move_point", "point": "C", "to": to}).text
+    b, c, e = (SketchParts(read_document(text, HERE)).places[name] for name in "BCE")
+    assert e == pytest.approx([(x + y) / 2 for x, y in zip(b, c, strict=True)], abs=4e-5)
+
+
 @pytest.mark.parametrize(
     "operation",
     [
@@ -229,6 +292,10 @@ REFUSALS = [
     ({"do": "rename", "object": "B", "name": "a/b"}, "a name"),
     ({"do": "set", "path": "links.XY.length", "value": 1}, "there is no"),
     ({"do": "set", "path": "links.AB.length", "value": "soon"}, "expected a length"),
+    ({"do": "set", "path": "links.AB.length", "value": "-1"}, "AB: length must be positive"),
+    ({"do": "set", "path": "links.BC.length", "value": "35 cm"}, "a group .* does not close any more"),
+    ({"do": "add_guide", "at": [1, 1], "point": "B", "on": "BC"}, "belongs to BC: it does not slide"),
+    ({"do": "add_guide", "at": [1, 1], "point": "B", "on": "XY"}, 'unknown link "XY"'),
     ({"do": "something"}, "does not know this operation"),
     ({}, "does not know this operation"),
 ]

@@ -208,7 +208,8 @@ class Workbench:
 
     def _patch_answer(self, patch: Patch) -> Answer:
         described = self._description_answer(read_document(patch.text, self.work.folder))
-        return {**described, "changed": list(dict.fromkeys(patch.changed)), "named": patch.named}
+        changed = list(dict.fromkeys(patch.changed))
+        return {**described, "changed": changed, "named": patch.named, "held": patch.held}
 
     def drag(self, message: Message) -> Answer:
         """Where everything stands while a point is dragged; the description after it, where it is dropped."""

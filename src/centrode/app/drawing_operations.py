@@ -19,12 +19,10 @@ QUARTER = math.pi / 2
 
 
 def add_link(patch: Patch, operation: Operation) -> None:
-    """Draw a link from one place or point to another."""
-    sketch = patch.drawn_sketch()
+    """Draw a link from one place or point to another; a place on a link becomes a point of that link."""
     ends = [patch.place_of(operation, "at"), patch.place_of(operation, "to")]
-    names: list[str | None] = []
-    for key in ("from_point", "to_point"):
-        names.append(None if operation.get(key) is None else patch.point_of(operation, key))
+    names = [_end_of(patch, operation, key, end) for key, end in zip(("from", "to"), ends, strict=True)]
+    sketch = patch.drawn_sketch()
     for k, end_name in enumerate(names):
         if end_name is not None:
             if end_name not in sketch.places:
@@ -43,6 +41,16 @@ def add_link(patch: Patch, operation: Operation) -> None:
         _add_link_of_points(patch, first, second)
         return
     _add_measured_link(patch, names, ends)
+
+
+def _end_of(patch: Patch, operation: Operation, key: str, place: Vector) -> str | None:
+    """The point at an end of a link that is drawn: one that was there, a new one of the link below, or None."""
+    if operation.get(f"{key}_point") is not None:
+        return patch.point_of(operation, f"{key}_point")
+    if operation.get(f"{key}_link") is None:
+        return None
+    add_point(patch, {"link": operation[f"{key}_link"], "at": list(place)})
+    return patch.named[-1]
 
 
 def _add_link_of_points(patch: Patch, first: str, second: str) -> None:
@@ -74,16 +82,20 @@ def _add_measured_link(patch: Patch, names: list[str | None], ends: list[Vector]
 
 
 def add_point(patch: Patch, operation: Operation) -> None:
-    """Give a link a further point."""
+    """Give a link a further point: a new one at a place, or one that is there already and is hinged to it."""
     sketch = patch.drawn_sketch()
-    link, place = operation.get("link"), patch.place_of(operation, "at")
+    link, point = operation.get("link"), operation.get("point")
     if not isinstance(link, str) or link not in sketch.links:
         raise InputError("", _("unknown link {name}").format(name=value_text(link)))
-    point = operation.get("point")
     name = next(patch.free_names()) if point is None else patch.point_of(operation)
+    if point is not None and name not in sketch.places:
+        raise InputError(name, _("its place is not known: correct the description first"))
+    place = patch.place_of(operation, "at") if point is None else sketch.places[name]
     if name in sketch.links[link]:
         raise InputError("", _("link {link} has this point already").format(link=link))
     points = sketch.links[link]
+    if f"links.{link}.length" in sketch.marks["locked"]:
+        patch.set_mark("locked", f"links.{link}.length", False)  # of more than two points none is the length
     if follows_from_points(sketch, link):
         if point is None:
             patch.new_point(place, name)
@@ -115,8 +127,11 @@ def add_point(patch: Patch, operation: Operation) -> None:
 
 
 def add_guide(patch: Patch, operation: Operation) -> None:
-    """Draw a line in which a point slides; on the sphere a great circle."""
+    """Draw a line in which a point slides, of the frame or of a link; on the sphere a great circle of the frame."""
     sketch = patch.drawn_sketch()
+    on = operation.get("on", FRAME)
+    if on != FRAME and (sketch.on_sphere or on not in sketch.links):
+        raise InputError("", _("unknown link {name}").format(name=value_text(on)))
     place = patch.place_of(operation, "at")
     direction = operation.get("direction", 0.0)
     pole: Vector | None = None
@@ -133,7 +148,7 @@ def add_guide(patch: Patch, operation: Operation) -> None:
         name = patch.new_point(place)
     else:
         name = patch.point_of(operation)
-    guide_point(patch, name, float(direction), pole)
+    guide_point(patch, name, float(direction), pole, on)
 
 
 def _pole(one: Vector, other: Vector) -> Vector:
@@ -145,14 +160,22 @@ def _pole(one: Vector, other: Vector) -> Vector:
     return pole
 
 
-def guide_point(patch: Patch, point: str, direction: float, pole: Vector | None = None) -> None:
-    """Let a point slide in a straight line through it at an angle [rad], or in the circle about a pole."""
+def guide_point(
+    patch: Patch, point: str, direction: float, pole: Vector | None = None, on: str = FRAME
+) -> None:
+    """Let a point slide in a straight line through it at an angle [rad] of the frame or of a link, or in the circle
+    about a pole.
+    """
     sketch = patch.sketch
-    if point in sketch.frame_points:
+    if on == FRAME and point in sketch.frame_points:
         raise InputError(point, _("a point of the frame does not slide: switch Ground off first"))
+    if on != FRAME and point in sketch.links[on]:
+        raise InputError(point, _("this point belongs to {link}: it does not slide in it").format(link=on))
     if sketch.guides_of(point):
         raise InputError(point, _("this point slides in a guide already"))
-    entries: dict[str, Any] = {"point": point, "on": FRAME}
+    if on != FRAME and on not in sketch.poses:
+        raise InputError(on, _("its place is not known: correct the description first"))
+    entries: dict[str, Any] = {"point": point, "on": on}
     if sketch.on_sphere:
         # the circle about a pole goes through the point: to the east where nobody says
         place = sketch.places.get(point, (1.0, 0.0, 0.0))
@@ -162,8 +185,10 @@ def guide_point(patch: Patch, point: str, direction: float, pole: Vector | None 
     if not (sketch.is_short_form and point in sketch.tables["points"]):
         if point not in sketch.places:
             raise InputError(point, _("its place is not known: correct the description first"))
-        entries["through"] = patch.pair(sketch.places[point])
-    entries["direction"] = written_direction(patch, direction)
+        place = sketch.places[point]
+        entries["through"] = patch.pair(place if on == FRAME else local_place(sketch.poses[on], place))
+    turned = 0.0 if on == FRAME else sketch.poses[on][1]
+    entries["direction"] = written_direction(patch, direction - turned)
     _add_guide_entry(patch, entries)
 
 

@@ -39,8 +39,12 @@ Assignment: TypeAlias = tuple[Place, Any]
 
 STANDS = 2e-4
 """So far [of the extent] a joint may stand from where it was dragged to: numbers of a file are rounded."""
-ON_LINE = 1e-9
-"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it."""
+ON_LINE = 3e-5
+"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it: coordinates of all three are
+rounded to a hundred-thousandth.
+"""
+APART = 1e-9
+"""Places farther apart than this [of the extent] are two."""
 SHORTEST = 1e-9
 """Shortest link [of the extent]."""
 OTHER_SIDE = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
@@ -210,6 +214,10 @@ def follow(sketch: SketchParts, path: str, number: float) -> Ready:
         except CentrodeError as error:
             failure = error
     assert failure is not None
+    if any(failure.where == f"[links.{name}] angle" for name in sketch.links if sketch.angle(name) is None):
+        # that angle is the position of the last step, in which a link jumps where its group comes to its limit
+        what = _("before this number is reached, a group of the initial position does not close any more")
+        raise InputError("", what, _("take a number nearer to the present one")) from failure
     raise failure
 
 
@@ -233,7 +241,7 @@ def written_position(sketch: SketchParts, prepared: Ready, left: Collection[Plac
     at = prepared.assembled.positions.points
     for point, place in sketch.places.items():
         now = tuple(map(float, at[point]))
-        apart = math.dist(now, place) > ON_LINE * sketch.size
+        apart = math.dist(now, place) > APART * sketch.size
         if apart and sketch.is_short_form and point in sketch.tables["points"]:
             place_of_point: Place = ("points", point)
             for key_of_point, number_there in written_place(sketch, place_of_point, now):

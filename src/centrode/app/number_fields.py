@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from centrode.app.edit_drags import (
+    STANDS,
     Assignment,
     follow,
     follows_from_points,
@@ -15,7 +16,7 @@ from centrode.app.edit_drags import (
 )
 from centrode.app.patches import Operation, Patch
 from centrode.app.quantity_texts import read_field, typed_quantity, with_decimal_point
-from centrode.app.sketch import SketchParts, Vector, drive_name
+from centrode.app.sketch import SketchParts, Vector, drive_name, on_unit_sphere
 from centrode.app.text_changes import spelled_value
 from centrode.errors import InputError
 from centrode.locale import _
@@ -41,7 +42,10 @@ def set_number(patch: Patch, operation: Operation) -> None:
         return
     number = read_field(sketch, value, kind)
     if path in sketch.marks["locked"]:
-        raise InputError(path, _("this length is locked"), _("unlock it first"))
+        raise InputError(str(place[1]), _("this length is locked"), _("unlock it first"))
+    if place[-1] == "length" and not number > 0.0:
+        what = _("{key} must be positive, got {value}").format(key="length", value=value_text(value))
+        raise InputError(str(place[1]), what)
     mechanism = sketch.document.mechanism
     geometric = place[0] in ("links", "frame", "guides", "drives", "points") and kind in (
         "length",
@@ -106,8 +110,16 @@ def move_point(patch: Patch, operation: Operation) -> None:
 
 def drop_point(patch: Patch, point: str, to: Vector) -> None:
     """Put a joint at another place, as near as locks and guides let it."""
-    reshaped = reshape(patch.sketch, point, to, patch.folder)
+    sketch = patch.sketch
+    reshaped = reshape(sketch, point, to, patch.folder)
     patch.write(*reshaped.assignments)
+    if not _stands_there(sketch, reshaped.places[point], to):
+        patch.held = reshaped.held
+
+
+def _stands_there(sketch: SketchParts, place: Vector, wished: Vector) -> bool:
+    """Whether a joint stands where it was put, but for rounded numbers."""
+    return math.dist(place, on_unit_sphere(wished) or place if sketch.on_sphere else wished) <= STANDS * sketch.size
 
 
 def lock(patch: Patch, operation: Operation) -> None:

@@ -33,12 +33,14 @@ class Patch:
     text : as it is now
     changed : paths of what was changed
     named : names of the objects that operations made
+    held : why a joint does not stand where it was put; empty if it does
     """
 
     def __init__(self, text: str, folder: Path) -> None:
         self.text, self.folder = text, folder
         self.changed: list[str] = []
         self.named: list[str] = []
+        self.held = ""
 
     @property
     def document(self) -> Document:
@@ -175,6 +177,7 @@ class Patch:
             self.write((("points", name), self.pair(place)))
         else:
             self.add_table(("points",), {name: self.pair(place)})
+            self.changed[-1] = f"points.{name}"
         self.named.append(name)
         return name
 

@@ -4,7 +4,7 @@ import { render } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { CamStage } from "./cam";
 import { busy, online } from "./connection";
-import { Dialogs, dialog, download, fresh, saveNow, share, viewIs } from "./dialogs";
+import { Dialogs, dialog, download, fresh, openDropped, saveNow, share, viewIs } from "./dialogs";
 import { Icon } from "./icons";
 import { PanelCard, ReadinessView } from "./panels";
 import { Player, step, toggle } from "./player";
@@ -158,6 +158,16 @@ addEventListener("keydown", (event) => {
   if (!act || (scene.value?.draws === false && "dg".includes(event.key))) return;
   event.preventDefault();
   act();
+});
+// A browser would leave the page for a file that is dropped on it.
+addEventListener("dragover", (event) => {
+  if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
+});
+addEventListener("drop", (event) => {
+  const file = event.dataTransfer?.files[0];
+  if (!file) return;
+  event.preventDefault();
+  void openDropped(file);
 });
 addEventListener("hashchange", () => void follow());
 addEventListener("beforeunload", keepNow);

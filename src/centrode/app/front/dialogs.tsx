@@ -102,6 +102,17 @@ async function fromComputer(file: File): Promise<void> {
   } else take(await file.text(), null, false);
 }
 
+// A file that is dropped on the page: a picture goes behind the drawing, all others are opened.
+export async function openDropped(file: File): Promise<void> {
+  if (file.type.startsWith("image/") && !DRAWING.test(file.name)) {
+    readInView(file);
+    return;
+  }
+  wrong.value = "";
+  await fromComputer(file);
+  if (wrong.value && !dialog.value) tell(wrong.value, true);
+}
+
 function OpenWindow() {
   const sought = filter.value.toLowerCase(), shown = (hello.value?.templates ?? []).filter((one) => `${one.title} ${one.name}`.toLowerCase().includes(sought));
   const groups = [...new Set(shown.map((one) => (one as Template & { group?: string }).group ?? ""))];
@@ -260,6 +271,12 @@ const length = signal("");
 export let middleOfView: () => { middle: Place; wide: number } = () => ({ middle: [0, 0], wide: 1 });
 export const viewIs = (view: typeof middleOfView): void => { middleOfView = view; };
 
+const readInView = (file: File): void => {
+  const { middle, wide } = middleOfView();
+  void readPhoto(file, middle, wide).catch(() => tell(say("photo_unreadable"), true));
+};
+const LENGTH = /^\s*(\d*[.,]?\d+)\s*(mm|cm|m|)\s*$/, METRES: Record<string, number> = { mm: 1e-3, cm: 1e-2, m: 1 };
+
 function PhotoWindow() {
   const unit = scene.value?.display?.length.unit ?? "m", factor = scene.value?.display?.length.factor ?? 1;
   return (
@@ -268,8 +285,8 @@ function PhotoWindow() {
       <div class="buttons">
         <label class="button file">{say(photo.value ? "photo_other" : "photo_choose")}
           <input type="file" accept="image/*" onChange={(event) => {
-            const file = event.currentTarget.files?.[0], { middle, wide } = middleOfView();
-            if (file) void readPhoto(file, middle, wide).catch(() => tell(say("photo_unreadable"), true));
+            const file = event.currentTarget.files?.[0];
+            if (file) readInView(file);
           }} />
         </label>
         {photo.value && <button type="button" onClick={() => put(null)}>{say("photo_remove")}</button>}
@@ -282,13 +299,13 @@ function PhotoWindow() {
           {measured.value ? (
             <form class="line" onSubmit={(event) => {
               event.preventDefault();
-              const value = Number(length.value.replace(",", ".")) / factor;
+              const [, number = "", own = ""] = LENGTH.exec(length.value) ?? [], value = Number(number.replace(",", ".")) * (METRES[own] ?? 1 / factor);
               if (!(value > 0)) return;
               scaleTo(measured.value!.from, measured.value!.to, value);
               dialog.value = "";
             }}>
               <label for="photo-length">{say("photo_length")}</label>
-              <input id="photo-length" type="text" inputMode="decimal" value={length.value} onInput={(event) => { length.value = event.currentTarget.value; }} />
+              <input id="photo-length" type="text" inputMode="decimal" required pattern={LENGTH.source} value={length.value} onInput={(event) => { length.value = event.currentTarget.value; }} />
               <span class="unit">{unitText(unit)}</span><button type="submit">{say("apply")}</button>
             </form>
           ) : (

@@ -161,6 +161,7 @@ export interface Reading {
   readiness: Readiness | null;
   changed?: string[];
   named?: string[]; // what an edit made
+  held?: string; // why a joint that was dropped does not stand where it was put
   error?: Refusal;
 }
 export interface TopicOption {

@@ -8,18 +8,34 @@ import { say, sentence } from "./words";
 
 const why = signal<string>(""); // of the row under pointer or focus
 
+// What is refused stays in its field to be mended while somebody is there; a field that is left shows what holds.
+async function attempt(field: HTMLInputElement, holds: string, change: () => Promise<unknown>): Promise<unknown> {
+  const answer = await change();
+  if (answer) field.removeAttribute("aria-invalid");
+  else if (document.activeElement === field) field.setAttribute("aria-invalid", "true");
+  else field.value = holds;
+  return answer;
+}
+const leave = (field: HTMLInputElement, holds: string): void => {
+  if (!field.hasAttribute("aria-invalid")) return;
+  field.removeAttribute("aria-invalid");
+  field.value = holds;
+};
+
 export async function removeSelected(): Promise<void> {
   if (selection.value.length) await edit({ do: "delete", objects: selection.value });
 }
 export async function duplicateSelected(): Promise<void> {
   const now = scene.value;
   if (!selection.value.length || !now) return;
-  if (now.kind === "sphere") { // the server turns the copy aside
-    await edit({ do: "duplicate", objects: selection.value });
-    return;
-  }
   const at = now.points.flatMap((point) => (point.at ? [point.at] : [])), wide = Math.max(...at.map((one) => one[0]!)) - Math.min(...at.map((one) => one[0]!));
-  await edit({ do: "duplicate", objects: selection.value, by: [0.15 * (wide || 1), -0.15 * (wide || 1)] });
+  const chosen = new Set(selection.value), aside = [0.15 * (wide || 1), -0.15 * (wide || 1)];
+  // on the sphere the server turns the copy aside
+  const answer = await edit({ do: "duplicate", objects: selection.value, ...(now.kind === "sphere" ? {} : { by: aside }) });
+  // the copy is at hand: of it the kinds of objects that were selected
+  const kinds = (["points", "links", "guides"] as const).filter((kind) => now[kind].some((one) => chosen.has(one.name)));
+  const copies = kinds.flatMap((kind) => answer?.scene?.[kind].map((one) => one.name).filter((name) => answer.named?.includes(name)) ?? []);
+  if (copies.length) selection.value = copies;
 }
 // About the upright or the level line through the middle of what is selected.
 export async function mirrorSelected(upright: boolean): Promise<void> {
@@ -39,7 +55,7 @@ export async function mirrorSelected(upright: boolean): Promise<void> {
 function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: string[] }) {
   const allowed = row?.allowed ?? false, on = row?.on ?? false, reason = allowed ? "" : sentence(row?.why) || say("row_no_object");
   const valued = on && row && row.value !== undefined && row.value !== null && allowed && of.length === 1;
-  const put = (value?: unknown): void => void edit(...of.map((object) => ({ do: "set_row", object, row: name, on: value !== undefined ? true : !on, ...(value !== undefined ? { value } : {}) })));
+  const put = (value?: unknown) => edit(...of.map((object) => ({ do: "set_row", object, row: name, on: value !== undefined ? true : !on, ...(value !== undefined ? { value } : {}) })));
   const angle = scene.value?.display?.angle ?? { unit: "rad", factor: 1 }, shown = name === "guide" ? angle : { unit: row?.unit ?? "", factor: 1 };
   const numbers = valued ? (Array.isArray(row.value) ? row.value : [row.value]) : [];
   return (
@@ -47,14 +63,15 @@ function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: 
       <button type="button" class="row-name" aria-pressed={on} aria-disabled={!allowed} data-row={name} title={reason || undefined}
         aria-describedby={reason ? "row-why" : undefined}
         onPointerEnter={() => { why.value = reason; }} onPointerLeave={() => { why.value = ""; }} onFocus={() => { why.value = reason; }} onBlur={() => { why.value = ""; }}
-        onClick={() => { if (allowed) put(); else why.value = reason; }}>
+        onClick={() => { if (allowed) void put(); else why.value = reason; }}>
         <Icon name={name} /> {say(`row_${name}`)}
       </button>
-      {numbers.map((one, k) => (
-        <input type="text" inputMode="decimal" aria-label={`${say(`row_${name}`)}${numbers.length > 1 ? ` ${"xyz"[k]}` : ""}`} value={String(typeof one === "number" ? Number((one * shown.factor).toPrecision(6)) : one ?? "")}
+      {numbers.map((one) => String(typeof one === "number" ? Number((one * shown.factor).toPrecision(6)) : one ?? "")).map((holds, k) => (
+        <input type="text" inputMode="decimal" aria-label={`${say(`row_${name}`)}${numbers.length > 1 ? ` ${"xyz"[k]}` : ""}`} value={holds}
+          onBlur={(event) => leave(event.currentTarget, holds)}
           onChange={(event) => {
             const read = Number(event.currentTarget.value.replace("−", "-").replace(",", ".")), value = Number.isFinite(read) && event.currentTarget.value.trim() ? read / shown.factor : event.currentTarget.value;
-            put(numbers.length > 1 ? numbers.map((other, j) => (j === k ? value : other)) : value);
+            void attempt(event.currentTarget, holds, () => put(numbers.length > 1 ? numbers.map((other, j) => (j === k ? value : other)) : value));
           }} />
       ))}
       {numbers.length > 0 && shown.unit && <span class="unit">{signed(shown.unit)}</span>}
@@ -67,7 +84,8 @@ function DimensionRow({ one }: { one: Dimension }) {
   return (
     <div class="dimension">
       <label for={`dimension-${one.path}`}>{one.name}</label>
-      <input id={`dimension-${one.path}`} type="text" inputMode="decimal" value={one.shown} data-path={one.path} autocomplete="off" onChange={(event) => void edit({ do: "set", path: one.path, value: event.currentTarget.value })} />
+      <input id={`dimension-${one.path}`} type="text" inputMode="decimal" value={one.shown} data-path={one.path} autocomplete="off" onBlur={(event) => leave(event.currentTarget, one.shown)}
+        onChange={(event) => { const { value } = event.currentTarget; void attempt(event.currentTarget, one.shown, () => edit({ do: "set", path: one.path, value })); }} />
       <span class="unit">{signed(one.unit)}</span>
       {lockable ? (
         <button type="button" class="plain" aria-pressed={one.locked ?? false} title={say(one.locked ? "unlock" : "lock")} aria-label={`${say(one.locked ? "unlock" : "lock")}: ${one.of ?? ""} ${one.name}`}
@@ -89,15 +107,16 @@ export function SelectionCard() {
     return { ...(allowed[0] ?? all[0]!), on: (allowed.length ? allowed : all).every((row) => row.on), allowed: allowed.length > 0 };
   };
   const able = (name: RowName): string[] => names.filter((object) => now.rows[object]?.[name]?.allowed);
+  const hinged = hingeOf(names);
   const dimensions = (now.dimensions ?? []).filter((one) => (first ? names.includes(one.of ?? "") : false));
   return (
     <section class="card selection" aria-label={say("selection")}>
       <h2>{first ? (names.length > 1 ? say("selected_many", { count: names.length }) : null) : say("selection")}
         {first && names.length === 1 && (
           <label class="rename"><span class="kind">{say(kindOf(first))}</span>
-            <input type="text" aria-label={say("name")} value={first} spellcheck={false} onChange={(event) => {
+            <input type="text" aria-label={say("name")} value={first} spellcheck={false} onBlur={(event) => leave(event.currentTarget, first)} onChange={(event) => {
               const name = event.currentTarget.value.trim();
-              if (name && name !== first) void edit({ do: "rename", object: first, name }).then((answer) => { if (answer) selection.value = [name]; });
+              if (name && name !== first) void attempt(event.currentTarget, first, () => edit({ do: "rename", object: first, name })).then((answer) => { if (answer) selection.value = [name]; });
               else event.currentTarget.value = first;
             }} />
           </label>
@@ -116,6 +135,7 @@ export function SelectionCard() {
           {names.length === 2 && names.every((name) => now.points.some((point) => point.name === name)) && (
             <button type="button" data-do="join" onClick={() => void edit({ do: "join", points: names })}>{say("join")}</button>
           )}
+          {hinged && <button type="button" data-do="hinge" onClick={() => void edit({ do: "add_point", link: hinged.link, point: hinged.point })}>{say("hinge", hinged)}</button>}
           <button type="button" data-do="duplicate" onClick={() => void duplicateSelected()}>{say("duplicate")}</button>
           <button type="button" data-do="mirror-upright" onClick={() => void mirrorSelected(true)}>{say("mirror_upright")}</button>
           <button type="button" data-do="mirror-level" onClick={() => void mirrorSelected(false)}>{say("mirror_level")}</button>
@@ -124,6 +144,12 @@ export function SelectionCard() {
       )}
     </section>
   );
+}
+
+// A joint and a link that does not have it: they can be hinged.
+function hingeOf(names: string[]): { point: string; link: string } | null {
+  const now = scene.value!, point = now.points.find((one) => names.includes(one.name)), link = now.links.find((one) => names.includes(one.name));
+  return names.length === 2 && point && link && !link.points.includes(point.name) ? { point: point.name, link: link.name } : null;
 }
 
 const kindOf = (name: string): string => {

@@ -8,7 +8,7 @@ import { photo, scalePhoto } from "./photo";
 import { type Frame, type Place, type Reading, isFrame } from "./protocol";
 import * as state from "./state";
 import { ask, digest, drawn, edit, mode, motion, place, playing, resting, scene, selection, tell, topic } from "./state";
-import { say, spelled, withUnit } from "./words";
+import { say, sentence, spelled, withUnit } from "./words";
 
 const DEGREE = Math.PI / 180, DEGREE_STEPS = [1, 2, 5, 10, 15];
 const NEAR = 14, NEAR_TOUCH = 24, NEAR_LINE = 9; // pixels
@@ -17,6 +17,12 @@ const MOVED = 5; // pixels that make a drag of a click
 export interface Target {
   kind: "point" | "link" | "guide";
   name: string;
+}
+// A place between two points of a link.
+interface Spot {
+  from: string;
+  to: string;
+  share: number;
 }
 interface Line {
   from: Place;
@@ -82,7 +88,10 @@ export class Stage {
     });
     effect(() => this.picture.mark(selection.value, state.readiness.value?.loose ?? []));
     effect(() => this.svg.setAttribute("aria-label", `${say("stage")}: ${scene.value?.title ?? ""}. ${say(`mode_${mode.value}_hint`)}`));
-    effect(() => this.svg.setAttribute("data-mode", mode.value));
+    effect(() => {
+      this.svg.setAttribute("data-mode", mode.value);
+      scalePhoto.value = null; // who chooses another mode does not measure any more
+    });
   }
 
   private get paper(): Paper {
@@ -277,15 +286,10 @@ export class Stage {
     }
     if (best || only) return best;
     least = U * NEAR_LINE * (touch ? 1.8 : 1);
-    const toSegment = (a: Place, b: Place): number => {
-      const way = minus(b, a), share = Math.min(1, Math.max(0, (minus(at, a)[0]! * way[0]! + minus(at, a)[1]! * way[1]!) / (way[0]! ** 2 + way[1]! ** 2 || 1)));
-      return size(minus(at, plus(a, way, share)));
-    };
+    const toSegment = (a: Place, b: Place): number => size(minus(at, plus(a, minus(b, a), along(a, minus(b, a), at))));
     for (const link of now.links) {
-      const known = link.points.map((name) => this.flatOf(name)).filter((one): one is Place => Boolean(one));
-      const around = known.length > 2 ? [...known, known[0]!] : known;
-      for (let k = 1; k < around.length; k += 1) {
-        const far = toSegment(around[k - 1]!, around[k]!);
+      for (const [from, to] of this.sidesOf(link.name)) {
+        const far = toSegment(this.flatOf(from)!, this.flatOf(to)!);
         if (far < least) [best, least] = [{ kind: "link", name: link.name }, far];
       }
     }
@@ -302,14 +306,52 @@ export class Stage {
     return best;
   }
 
-  // Where a hand means: a joint nearby, else the grid.
-  private meant(at: Place, event: { altKey: boolean } | null, touch: boolean, not?: Target | null): { place: Place; target: Target | null } {
-    const target = this.target(at, touch);
-    if (target && target.name !== not?.name) {
-      if (target.kind === "point") return { place: this.where().place(target.name)!, target };
-      if (target.kind === "link") return { place: this.paper.back(at), target };
-    }
+  // Where a hand means: a joint nearby, a place on a link, else the grid. What is meant is seen before the drawing goes
+  // back to its initial position, its place is that after it.
+  private meant(at: Place, event: { altKey: boolean } | null, touch: boolean, not?: Target | null, goBack?: () => void): { place: Place; target: Target | null } {
+    const target = this.target(at, touch), taken = target && target.name !== not?.name ? target.kind : null;
+    const spot = taken === "link" ? this.spotOn(target!.name, at, event) : null;
+    goBack?.();
+    if (taken === "point") return { place: this.where().place(target!.name)!, target };
+    if (taken === "link") return { place: this.placeOf(spot) ?? this.paper.back(at), target };
     return { place: this.snapped(this.paper.back(at), event, this.step), target: null };
+  }
+
+  // The place on a link of the plane that is nearest to a hand, as a share of the way between two of its points: a
+  // crossing with another link or the middle where one of them is near, else at a round distance from the first point.
+  private spotOn(link: string, at: Place, event: { altKey: boolean } | null): Spot | null {
+    if (this.spherical) return null;
+    let best: Spot | null = null, least = Infinity;
+    for (const [from, to] of this.sidesOf(link)) {
+      const [a, b] = [this.flatOf(from)!, this.flatOf(to)!], way = minus(b, a), share = along(a, way, at);
+      const far = size(minus(at, plus(a, way, share)));
+      if (far < least) [best, least] = [{ from, to, share }, far];
+    }
+    if (!best || !state.snapping.peek() || event?.altKey) return best;
+    const [a, b] = [this.flatOf(best.from)!, this.flatOf(best.to)!], way = minus(b, a), length = size(way);
+    const near = (share: number): number => Math.abs(share - best!.share) * length;
+    const shares = [0.5, ...this.crossings(link, a, way)].filter((share) => near(share) < NEAR * U).sort((one, other) => near(one) - near(other));
+    const real = length / (this.plane.scale * U), round = (Math.round((best.share * real) / this.step) * this.step) / real;
+    return { ...best, share: shares[0] ?? (round > 0 && round < 1 ? round : best.share) };
+  }
+  private placeOf(spot: Spot | null): Place | null {
+    const [a, b] = spot ? [this.where().place(spot.from), this.where().place(spot.to)] : [null, null];
+    return a && b && plus(a, minus(b, a), spot!.share);
+  }
+  // Lines between neighbouring points of a link.
+  private sidesOf(link: string): [string, string][] {
+    const points = scene.peek()!.links.find((one) => one.name === link)?.points.filter((name) => this.flatOf(name)) ?? [];
+    const around = points.length > 2 ? [...points, points[0]!] : points;
+    return around.slice(1).map((name, k) => [around[k]!, name]);
+  }
+  // Where other links cross a line, as shares of it.
+  private crossings(link: string, a: Place, way: Place): number[] {
+    const others = scene.peek()!.links.filter((one) => one.name !== link).flatMap((one) => this.sidesOf(one.name));
+    return others.flatMap(([from, to]) => {
+      const c = this.flatOf(from)!, other = minus(this.flatOf(to)!, c), off = minus(c, a), turn = cross(way, other);
+      const [share, there] = [cross(off, other) / turn, cross(off, way) / turn];
+      return share > 0 && share < 1 && there > 0 && there < 1 ? [share] : [];
+    });
   }
 
   // --- pointers --------------------------------------------------------------------------------------------------
@@ -331,6 +373,18 @@ export class Stage {
       this.crosshair.setAttribute("display", "none");
     });
     svg.addEventListener("contextmenu", (event) => event.preventDefault());
+    // a hand that holds something has the keyboard too: Escape lets go, and nothing is undone or deleted under it
+    addEventListener("keydown", (event) => {
+      if (!this.gesture || (event.target instanceof Element && event.target.closest("input, textarea, .cm-editor"))) return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (event.key !== "Escape") return;
+      this.gesture.cancel?.();
+      this.gesture = null;
+    }, true);
+    svg.addEventListener("lostpointercapture", (event) => {
+      if (this.pointers.has(event.pointerId)) this.up(event);
+    });
   }
 
   private down(event: PointerEvent): void {
@@ -374,8 +428,8 @@ export class Stage {
     const { gesture } = this;
     if (this.pointers.size) return;
     this.gesture = null;
-    if (event.type === "pointercancel") gesture?.cancel?.();
-    else gesture?.end(this.moved, event);
+    if (event.type === "pointerup") gesture?.end(this.moved, event);
+    else gesture?.cancel?.();
   }
 
   private hover(at: Place, event: PointerEvent): void {
@@ -422,12 +476,9 @@ export class Stage {
   }
 
   // Drawing and editing happen where the description has everything: at the initial position.
-  private initial(): boolean {
+  private initial(): void {
     this.rest();
-    const start = motion.value?.start ?? 0;
-    if (!this.picture.motion || Math.abs(place.value - start) < 1e-6) return true;
-    place.value = start;
-    return false;
+    if (this.picture.motion) place.value = motion.value?.start ?? 0;
   }
 
   // The motion that a topic has found makes way for the description.
@@ -438,21 +489,21 @@ export class Stage {
 
   // --- drawing ---------------------------------------------------------------------------------------------------
   private drawing(at: Place, event: PointerEvent, touch: boolean): NonNullable<Stage["gesture"]> {
-    const here = this.initial(), guide = mode.value === "guide", from = this.meant(at, event, touch);
+    const guide = mode.value === "guide", from = this.meant(at, event, touch, null, () => this.initial());
     this.line = { from: from.place, target: from.target, to: from.place, end: null, guide };
     return {
       move: (now, next) => {
         if (!this.line) return;
         const to = this.meant(now, next, touch, this.line.target?.kind === "point" ? this.line.target : null);
         this.line.to = to.place;
-        this.line.end = guide ? null : to.target;
+        this.line.end = this.endOf(this.line, to.target);
         this.sketch();
       },
       end: (moved, last) => {
         const { line } = this;
         this.line = null;
         this.sketch();
-        if (moved && line && here) void this.finish(line);
+        if (moved && line) void this.finish(line);
         else this.choose(this.target(at, touch), last?.shiftKey ?? false);
       },
       cancel: () => {
@@ -460,6 +511,14 @@ export class Stage {
         this.sketch();
       },
     };
+  }
+
+  // What a line ends on: a guide only on a link in which its joint slides.
+  private endOf(line: Line, target: Target | null): Target | null {
+    if (!line.guide) return target;
+    const own = line.target?.kind === "point" ? line.target.name : null;
+    const link = target?.kind === "link" ? scene.peek()?.links.find((one) => one.name === target.name) : null;
+    return link && own && !this.spherical && !link.points.includes(own) ? target : null;
   }
 
   private sketch(): void {
@@ -486,23 +545,15 @@ export class Stage {
     const way = minus(line.to, line.from);
     if (!(size(way) > 0)) return;
     if (line.guide) {
-      const point = line.target?.kind === "point" ? line.target.name : undefined;
-      const answer = await edit({ do: "add_guide", at: line.from, ...(this.spherical ? { to: line.to } : { direction: way }), ...(point ? { point } : {}) });
-      this.select(answer, "guides");
+      const point = line.target?.kind === "point" ? { point: line.target.name } : {};
+      const slot = line.end ? this.spotOn(line.end.name, this.paper.flat(line.to), { altKey: true }) : null, [a, b] = slot ? [this.where().place(slot.from)!, this.where().place(slot.to)!] : [];
+      const direction = slot ? { on: line.end!.name, direction: minus(b!, a!) } : { direction: way };
+      this.select(await edit({ do: "add_guide", at: line.from, ...(this.spherical ? { to: line.to } : direction), ...point }), "guides");
       return;
     }
-    const ends: (string | undefined)[] = [];
-    for (const [target, at] of [[line.target, line.from], [line.end, line.to]] as const) {
-      if (target?.kind === "point") ends.push(target.name);
-      else if (target?.kind === "link") {
-        const answer = await edit({ do: "add_point", link: target.name, at });
-        if (!answer) return;
-        ends.push(answer.named?.[0]);
-      } else ends.push(undefined);
-    }
-    if (ends[0] !== undefined && ends[0] === ends[1]) return;
-    const answer = await edit({ do: "add_link", at: line.from, to: line.to, ...(ends[0] ? { from_point: ends[0] } : {}), ...(ends[1] ? { to_point: ends[1] } : {}) });
-    this.select(answer, "links");
+    if (line.target?.kind === "point" && line.end?.kind === "point" && line.target.name === line.end.name) return;
+    const end = (key: string, target: Target | null): Record<string, string> => (target && target.kind !== "guide" ? { [`${key}_${target.kind}`]: target.name } : {});
+    this.select(await edit({ do: "add_link", at: line.from, to: line.to, ...end("from", line.target), ...end("to", line.end) }), "links");
   }
 
   // Selects what an edit has made, so that its state rows are at hand.
@@ -514,7 +565,7 @@ export class Stage {
   private double(event: MouseEvent): void {
     if (!(mode.value === "draw" || mode.value === "edit")) return;
     const at = this.at(event), target = this.target(at);
-    if (target?.kind === "link") void this.addPoint(target.name, this.paper.back(at));
+    if (target?.kind === "link") void this.addPoint(target.name, this.placeOf(this.spotOn(target.name, at, event)) ?? this.paper.back(at));
   }
 
   async addPoint(link: string, at: Place): Promise<void> {
@@ -557,7 +608,7 @@ export class Stage {
 
   // One request is on its way; of places that come meanwhile the latest is sent when it is back.
   private held(name: string, how: "edit" | "move", event: PointerEvent, chosen: Target | null = { kind: "point", name }): NonNullable<Stage["gesture"]> {
-    const begun = how === "edit" ? this.initial() : true;
+    if (how === "edit") this.initial();
     this.rest();
     const point = scene.value?.points.find((one) => one.name === name), allowed = point?.handles[how] ?? false;
     const touch = event.pointerType === "touch", grip = this.flatOf(name), off = grip ? minus(this.begun, grip) : [0, 0];
@@ -575,8 +626,8 @@ export class Stage {
     };
     return {
       move: (at, last) => {
-        if (!allowed || !begun) {
-          if (!allowed) tell(point?.handles.why ?? say("held_point", { name }), true);
+        if (!allowed) {
+          this.refuse(name, point?.handles.why);
           return;
         }
         this.svg.classList.add("held");
@@ -588,7 +639,7 @@ export class Stage {
           this.choose(chosen, last?.shiftKey ?? false);
           return;
         }
-        if (!(allowed && begun && last)) return;
+        if (!(allowed && last)) return;
         const other = onto(minus(this.at(last), off));
         if (other) void this.join(drag, name, other);
         else void this.drop(drag, goal(this.at(last), last));
@@ -600,6 +651,10 @@ export class Stage {
         this.draw();
       },
     };
+  }
+
+  private refuse(name: string, why: string | null | undefined): void {
+    tell(why ? sentence(why) : say("held_point", { name }), true);
   }
 
   private meantFree(at: Place, event: { altKey: boolean } | null): Place {
@@ -623,7 +678,7 @@ export class Stage {
     };
     const { at, held, values } = frame.header, before = place.peek();
     if (typeof at === "number") this.seek(at);
-    if (held) tell(String(held), true);
+    if (held) tell(sentence(String(held)), true);
     else if (values && Object.keys(values).length) this.showValues(values);
     if (place.peek() === before) this.draw(); // the player's place draws by itself
     this.svg.setAttribute("data-updates", String(Number(this.svg.getAttribute("data-updates")) + 1));
@@ -706,6 +761,10 @@ export class Stage {
         this.sketch();
         if (moved && line) scalePhoto.value?.(line.from, line.to);
       },
+      cancel: () => {
+        this.line = null;
+        this.sketch();
+      },
     };
   }
 
@@ -741,7 +800,7 @@ export class Stage {
   private async nudge(name: string, way: Place, far: boolean): Promise<void> {
     const how = mode.value as "edit" | "move", point = scene.value?.points.find((one) => one.name === name);
     if (!point?.handles[how]) {
-      tell(point?.handles.why ?? say("held_point", { name }), true);
+      this.refuse(name, point?.handles.why);
       return;
     }
     if (how === "edit") this.initial();
@@ -759,7 +818,8 @@ export class Stage {
 
   private anchor(target: Target | null, at: Place): void {
     if (!this.line) {
-      if (!this.initial()) at = target ? this.where().place(target.name) ?? at : at;
+      this.initial();
+      if (target?.kind === "point") at = this.where().place(target.name) ?? at;
       this.line = { from: at, target, to: at, end: null, guide: mode.value === "guide" };
       this.cursor = at;
       this.svg.focus({ preventScroll: true });
@@ -768,7 +828,7 @@ export class Stage {
     } else {
       const { line } = this;
       line.to = at;
-      line.end = line.guide ? null : target;
+      line.end = this.endOf(line, target);
       this.line = null;
       void this.finish(line);
     }
@@ -785,7 +845,7 @@ export class Stage {
     tell(`${[0, 1].map((axis) => `${signs[axis]} = ${withUnit(spelled(numbers[axis]! * unit.factor, 5), unit.unit)}`).join(", ")}${name}`);
     if (this.line) {
       this.line.to = target?.kind === "point" ? this.where().place(target.name)! : this.cursor;
-      this.line.end = this.line.guide ? null : target;
+      this.line.end = this.endOf(this.line, target);
       this.sketch();
     }
   }
@@ -837,15 +897,14 @@ export class Stage {
     } else if ((event.key === "Enter" || event.key === " ") && this.cursor) {
       const target = this.target(this.paper.flat(this.cursor));
       if (scalePhoto.value) this.measureTo(this.cursor);
-      else if (mode.value === "draw" || mode.value === "guide") this.anchor(target, target?.kind === "point" ? this.where().place(target.name)! : this.cursor);
+      else if (mode.value === "draw" || mode.value === "guide") this.anchor(target, this.meant(this.paper.flat(this.cursor), { altKey: true }, false).place);
       else this.choose(target, event.shiftKey);
     } else if (event.key === " ") {
       this.space = true;
       return; // the page plays where nobody drags
     } else if (event.key === "Escape") {
       this.line = null;
-      this.gesture?.cancel?.();
-      this.gesture = null;
+      scalePhoto.value = null;
       this.sketch();
       if (!this.cursor) selection.value = [];
       this.cursor = null;
@@ -855,6 +914,13 @@ export class Stage {
     event.stopPropagation();
   }
 }
+
+const cross = (a: Place, b: Place): number => a[0]! * b[1]! - a[1]! * b[0]!;
+// The share of a way from a place on that is nearest to another place.
+const along = (a: Place, way: Place, at: Place): number => {
+  const off = minus(at, a);
+  return Math.min(1, Math.max(0, (off[0]! * way[0]! + off[1]! * way[1]!) / (way[0]! ** 2 + way[1]! ** 2 || 1)));
+};
 
 const svgCapture = (svg: SVGSVGElement, pointer: number): void => {
   try {

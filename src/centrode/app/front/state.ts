@@ -7,7 +7,7 @@ import { type Motion, coursesOf, motionOf } from "./motion";
 import { type Hello, type Panel, type Problem, type Readiness, type Reading, type Scene, isFrame } from "./protocol";
 import { pack, unpack } from "./share";
 import { token } from "./token";
-import { decimal, language, say, sentences, units, words } from "./words";
+import { decimal, language, say, sentence, sentences, units, words } from "./words";
 
 export type Mode = "draw" | "guide" | "edit" | "move";
 
@@ -91,7 +91,7 @@ export const ask = (request: Request, channel: string | null = null): Promise<an
   connection.ask({ language: language.value, ...request }, channel);
 
 // --- texts and what they mean ------------------------------------------------------------------------------------------
-let known = ""; // the text that the digest is of
+let known: string | null = null; // the text that the digest is of
 const named = (): { digest: string } | { text: string } => (known === text.value ? { digest: digest.value } : { text: text.value });
 function take(answer: Reading): void {
   known = answer.text;
@@ -175,7 +175,8 @@ export function accept(answer: Reading): void {
   text.value = answer.text;
   take(answer);
   settle();
-  tell(answer.changed?.length ? say("changed", { paths: changedText(answer.changed) }) : "");
+  const changed = answer.changed?.length ? say("changed", { paths: changedText(answer.changed) }) : "";
+  tell(answer.held ? [changed, sentence(answer.held)].filter(Boolean).join(" · ") : changed, Boolean(answer.held));
   renew();
 }
 
@@ -336,8 +337,8 @@ export async function follow(): Promise<boolean> {
 
 // --- beginning ---------------------------------------------------------------------------------------------------------
 const LANGUAGE = "centrode.language";
-export const BLANK = "[frame.points]\n\n[links]\n";
-export const SPHERE = `space = "sphere"\ndisplay = { angle = "deg" }\n\n${BLANK}`;
+export const BLANK = "";
+export const SPHERE = `space = "sphere"\ndisplay = { angle = "deg" }\n`;
 let begun = false;
 
 async function greet(): Promise<void> {
