@@ -20,24 +20,32 @@ DIRECTORY = Path(__file__).parent
 MANY = 5
 """A number that takes the form of many in every language spoken."""
 
+AS_WRITTEN: Mapping[str, str] = {}
+"""No sentence is said otherwise than it is written."""
+
 _catalogue: gettext.NullTranslations = gettext.NullTranslations()
+_versions: Mapping[str, str] = AS_WRITTEN
 
 
 def _(message: str) -> str:
     """The sentence in the chosen language; the English text is its name."""
-    return _catalogue.gettext(message) if message else ""
+    return _catalogue.gettext(_versions.get(message, message)) if message else ""
 
 
 @contextmanager
-def speaking(language: str) -> Iterator[None]:
-    """Speak another language for a while: what results keep is English, whoever computes them."""
-    global _catalogue
-    before = _catalogue
+def speaking(language: str, versions: Mapping[str, str] = AS_WRITTEN) -> Iterator[None]:
+    """Speak another language for a while: what results keep is English, whoever computes them.
+
+    `versions` has other sentences in place of some, for readers at whose hand is something else than a terminal.
+    """
+    global _catalogue, _versions
+    before = _catalogue, _versions
     choose_language(language)
+    _versions = versions
     try:
         yield
     finally:
-        _catalogue = before
+        _catalogue, _versions = before
 
 
 def ngettext(singular: str, plural: str, number: object) -> str:
@@ -47,7 +55,7 @@ def ngettext(singular: str, plural: str, number: object) -> str:
     """
     # whole numbers of numpy are none of Python's, and gettext takes only these; a truth value counts nothing
     whole = index(number) if isinstance(number, SupportsIndex) and not isinstance(number, bool) else MANY
-    return _catalogue.ngettext(singular, plural, whole)
+    return _catalogue.ngettext(_versions.get(singular, singular), _versions.get(plural, plural), whole)
 
 
 def chosen_language() -> str:
