@@ -40,7 +40,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def places_of(one: Bench) -> dict[str, np.ndarray]:
     """Places of the points as the text has them [m]."""
     tables = one.tables
-    given = {**tables.get("points", {}), **tables["frame"]["points"]}
+    fixed = tables["frame"]["points"]
+    given = {**tables.get("points", {}), **(fixed if isinstance(fixed, dict) else {})}
     return {name: np.array(place, float) for name, place in given.items()}
 
 

@@ -87,6 +87,28 @@ def test_dropping_on_a_joint_makes_a_hinge_and_joining_too():
     assert sorted(SketchParts(hinged.document).owners("B")) == ["AB", "BC", "BE"]
 
 
+def test_a_joint_is_hinged_to_a_link_where_it_stands():
+    """The middle of a scissor: both links have it, and a lock of a length that is none any more is taken away."""
+    patch = patch_of(
+        "",
+        {"do": "add_link", "at": [0, 0], "to": [2, 1]},
+        {"do": "add_link", "at": [2, 0], "to": [0, 1]},
+        {"do": "add_point", "link": "AB", "at": [1, 0.5]},
+        {"do": "lock", "path": "links.CD.length", "on": True},
+        {"do": "add_point", "link": "CD", "point": "E"},
+    )
+    sketch = SketchParts(patch.document)
+    assert sketch.owners("E") == ["AB", "CD"] and sketch.places["E"] == (1.0, 0.5)
+    assert not sketch.marks["locked"]
+
+
+def test_a_joint_that_does_not_come_where_it_was_put_says_why():
+    locked = patch_of(FOUR_BAR, {"do": "lock", "path": "links.BC.length", "on": True})
+    apply_operation(locked, {"do": "move_point", "point": "C", "to": [5, 4]})
+    assert locked.held == "the locked length holds"
+    assert patch_of(FOUR_BAR, {"do": "move_point", "point": "C", "to": [4.1, 2]}).held == ""
+
+
 def test_a_point_on_a_link_makes_a_plate():
     text = patch_of(FOUR_BAR, {"do": "add_point", "link": "BC", "at": [2, 3]}).text
     mechanism = ct.parse_mechanism(text)

@@ -7,13 +7,16 @@ import io
 import math
 import zipfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from centrode.app.documents import read_document
 from centrode.app.frames import read_frame
-from centrode.app.motion_frames import MOST_FRAMES, MOST_NUMBERS, chosen_samples
+from centrode.app.motion_frames import MOST_FRAMES, MOST_NUMBERS, chosen_samples, motion_answer
+from centrode.app.sketch import SketchParts
 from centrode.model.examples import example_text
 
 SINGLE = 2.0**-22
@@ -213,3 +216,23 @@ def test_events_are_said_once_and_portraits_go_from_left_to_right(ask: Callable[
     low, high = portrait["x"]["ends"]
     # the door shuts: its angle falls from 80 degrees
     assert low < 0.0 < START < high and portrait["x"]["values"][0] > portrait["x"]["values"][-1]
+
+
+@pytest.mark.parametrize("name", ["crank-rocker", "double-rocker", "scissor-lift", "hoeken"])
+def test_the_initial_position_is_found_among_the_samples(name: str) -> None:
+    """Where the range of the drive begins elsewhere too: there the points stand as the description has them."""
+    document = read_document(example_text(name), Path())
+    header, arrays = motion_answer(document.require_prepared(), 361)
+    sketch = SketchParts(document)
+    low = math.floor(header["start"])
+    share, rows = header["start"] - low, np.asarray(arrays["points"])[[low, min(low + 1, 360)]]
+    seen = (1 - share) * rows[0] + share * rows[1]
+    expected = [sketch.places[point] for point in header["points"]]
+    # the chord between two of 361 samples
+    assert np.abs(seen - expected).max() < 1e-3 * sketch.size
+
+
+def test_a_range_without_the_initial_position_has_none() -> None:
+    text = example_text("crank-rocker") + "\n[study]\nfrom = 1.0\nto = 2.0\n"
+    header, _arrays = motion_answer(read_document(text, Path()).require_prepared(), 91)
+    assert header["start"] is None

@@ -274,8 +274,7 @@ class Workbench:
         samples = message.get("samples")
         count = samples if isinstance(samples, int) and not isinstance(samples, bool) else None
         try:
-            document.require_prepared()
-            header, arrays = motion_answer(document.require_mechanism(), count)
+            header, arrays = motion_answer(document.require_prepared(), count)
         except CentrodeError as failure:
             return {"missing": with_panel_titles(failure.what), "repair": with_panel_titles(failure.repair)}
         return frame_bytes({"id": message.get("id", 0), **header}, arrays)

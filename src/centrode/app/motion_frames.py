@@ -11,6 +11,7 @@ import xarray as xr
 
 from centrode.errors import CentrodeError, Status
 from centrode.kinematics.motion import motion
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import shown_as
@@ -38,8 +39,9 @@ ARRAYS_OF_MOTION = {
 """Array of a frame -> variable of a motion."""
 
 
-def motion_answer(mechanism: Mechanism, samples: int | None) -> tuple[dict[str, Any], dict[str, Any]]:
+def motion_answer(prepared: Ready, samples: int | None) -> tuple[dict[str, Any], dict[str, Any]]:
     """Header and arrays of the motion of a mechanism over its range."""
+    mechanism = prepared.mechanism
     count = min(max(samples or mechanism.study.samples or 361, 2), MOST_SAMPLES)
     data = motion(mechanism, count)
     parameter = mechanism.motion_parameter
@@ -69,7 +71,21 @@ def motion_answer(mechanism: Mechanism, samples: int | None) -> tuple[dict[str, 
     }
     arrays = {"drive": np.asarray(parameter.instants(data), dtype=float), **_arrays(data)}
     header["cams"] = _add_cams(mechanism, data, arrays)
+    header["start"] = _initial_sample(prepared, arrays["drive"])
     return header, arrays
+
+
+def _initial_sample(prepared: Ready, instants: npt.NDArray[Any]) -> float | None:
+    """Where the initial position is among the samples, between two of them as a fraction; None where the range leaves
+    it out.
+    """
+    begins = 0.0
+    if prepared.mechanism.motion_parameter.is_uniform:
+        (begins,) = map(float, prepared.assembled.positions.drives.values())
+    if not min(instants) <= begins <= max(instants):
+        return None
+    forward = 1.0 if instants[-1] >= instants[0] else -1.0
+    return float(np.interp(forward * begins, forward * instants, np.arange(len(instants))))
 
 
 def _names_and_statuses(data: xr.Dataset) -> dict[str, Any]:

@@ -102,8 +102,12 @@ export class Motion {
   get symbol(): string {
     return this.frame.header.symbol || ({ angle: "φ", length: "s", time: "t" } as Record<string, string>)[this.frame.header.kind] || "";
   }
+  // The place of the initial position; a motion that leaves it out begins at its first sample.
   get start(): number {
     return this.frame.header.start ?? 0;
+  }
+  get holdsInitial(): boolean {
+    return typeof this.frame.header.start === "number";
   }
   get cams(): DrivingCam[] {
     return this.frame.header.cams ?? [];

@@ -135,7 +135,10 @@ export class Stage {
   private found = "";
 
   private where(): { place: (name: string) => Place | null; angle: (link: string) => number } {
-    const { live } = this, moving = this.picture.motion, at = drawn.peek().place.peek();
+    const { live } = this, at = drawn.peek().place.peek();
+    // the initial position of a motion that leaves it out is that of the description
+    const initial = mode.peek() !== "move" && this.picture.motion === motion.peek() && !this.picture.motion?.holdsInitial && at === this.picture.motion?.start;
+    const moving = initial ? null : this.picture.motion;
     const here = new Map(scene.peek()?.points.map((point) => [point.name, point.at]));
     return {
       place: (name) => live?.points.get(name) ?? (moving && moving.point(name) >= 0 ? moving.place(name, at) : null) ?? here.get(name) ?? null,

@@ -145,13 +145,14 @@ export function load(next: string, name: string | null, onDisk: boolean): void {
   text.value = next;
   belongs(history.file);
   selection.value = [];
-  place.value = 0;
+  opened = true;
   playing.value = false;
   awaited = true;
   tell("");
   settle();
   void read();
 }
+let opened = false; // whether the next motion is that of another mechanism
 let awaited = false; // whether the next scene is another mechanism
 export const fits = signal(0); // counts up when the view has to hold everything again
 
@@ -208,8 +209,9 @@ async function renew(): Promise<void> {
     const answer = await ask({ do: "motion", digest: now, samples: SAMPLES }, "motion");
     if (answer === SUPERSEDED || digest.value !== now) return;
     const next = motionOf(answer, now);
-    if (next && place.value > next.last) place.value = 0;
-    if (next && !motion.value) place.value = next.start;
+    // who looks at the initial position goes on doing so
+    if (next && (opened || place.value > next.last || !motion.value || Math.abs(place.value - motion.value.start) < 1e-6)) place.value = next.start;
+    opened = opened && !next;
     motion.value = next;
     still.value = next ? null : isFrame(answer) ? null : { message: answer.missing ?? answer.error?.message ?? "", repair: answer.repair ?? answer.error?.repair };
   }
