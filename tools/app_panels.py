@@ -40,6 +40,8 @@ LANGUAGES = ("en", "ru", "uk")
 SCHEMES = ("light", "dark")
 WIDTHS = (400, 1000, 1600)
 HEIGHT = 900
+RESIZED = 300
+"""Milliseconds after which a panel of another width asks for its figures."""
 TALLEST = 2400
 """Pixels of a panel that a sheet shows."""
 GAP, HEAD = 16, 22
@@ -170,6 +172,7 @@ def until(window: Any, condition: str, argument: object = None) -> None:
 def settle(window: Any) -> None:
     """Wait until nothing is computed any more and all is drawn."""
     until(window, SETTLED)
+    until(window, "document.querySelector('#panel:not([data-ready=true])') === null")
     window.evaluate(DRAWN)
 
 
@@ -211,6 +214,7 @@ def look(
     (language, scheme), folder = view, arguments.folder
     for wide in WIDTHS:
         window.set_viewport_size({"width": wide, "height": HEIGHT})
+        window.wait_for_timeout(RESIZED)
         settle(window)
         turn = LANGUAGES.index(language) + WIDTHS.index(wide)
         if arguments.square and SCHEMES.index(scheme) != turn % 2:

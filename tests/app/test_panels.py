@@ -57,6 +57,7 @@ def test_options_and_fields_are_named_in_the_language(ask):
     assert not {field["name"] for field in fields if field["of"] in ("cam", "follower")} & set(WORDS)
 
 
+WIDTH = re.compile(r'<svg[^>]*? width="([\d.]+)pt"')
 LOOK = re.compile(r"none|currentColor|var\(--paper\)|light-dark\(#[0-9a-f]{6}, #[0-9a-f]{6}\)")
 """Colours that follow the screen."""
 
@@ -82,6 +83,22 @@ def test_pictures_have_the_edges_of_their_ground_and_commas(ask, name, topic):
         assert all(LOOK.fullmatch(one) for one in colours)
         assert "#" not in "".join(re.findall(r' (?:fill|stroke)="([^"]+)"', block["svg"]))
         assert "DejaVuSans-2e" not in block["svg"]  # the full stop, among outlines of letters
+
+
+@pytest.mark.parametrize("room", [240, 278, 420])
+@pytest.mark.parametrize("topic", ["polygons", "diagrams", "centres"])
+def test_pictures_are_no_wider_than_the_panel_has_room(ask, topic, room):
+    """A drawing to scale takes a coarser scale, or a group stands above its polygon."""
+    panel = ask("panel", text=example_text("six-bar-press"), topic=topic, samples=37, room=room)
+    widths = [float(WIDTH.search(block["svg"])[1]) for block in panel["blocks"] if block["kind"] == "picture"]
+    assert widths and max(widths) <= room
+
+
+@pytest.mark.parametrize("room", [None, True, -1, "wide", 1e308, [], {}])
+def test_a_room_that_is_none_is_that_of_a_document(ask, room):
+    asked = {"text": example_text("crank-rocker"), "topic": "plan", "samples": 37}
+    shown, usual = (ask("panel", **asked, **more)["blocks"] for more in ({"room": room}, {}))
+    assert shown == usual
 
 
 def test_what_is_wrong_names_no_option_of_the_command(ask):

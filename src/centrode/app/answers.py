@@ -314,7 +314,11 @@ class Workbench:
     def panel(self, message: Message) -> Answer:
         """What a topic has to say about the description; with the motions that it has found as a frame."""
         panel, arrays = panel_of(
-            self.document(message), message.get("topic"), message.get("options"), message.get("samples")
+            self.document(message),
+            message.get("topic"),
+            message.get("options"),
+            message.get("samples"),
+            message.get("room"),
         )
         return frame_bytes({"id": message.get("id", 0), **panel}, arrays) if arrays else panel
 

@@ -35,6 +35,10 @@ SAMPLES = 721
 """Samples of a panel at most."""
 INSTANTS = 5
 """Instants of a panel at most."""
+MOST_ROOM = 10_000
+"""Points of a picture's width: a page that claims more has none."""
+POINTS = 72.0
+"""Points of an inch."""
 TEXT = 200
 """Characters of an option."""
 CONCERNS_NOTHING = mark("this description has nothing that this topic is about")
@@ -136,9 +140,14 @@ def topic_named(name: object) -> Topic:
 
 
 def panel_of(
-    document: Document, name: object, options: object, samples: object
+    document: Document, name: object, options: object, samples: object, room: object = None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The panel of a topic, its blocks or why there are none, and the arrays of the motions that they play."""
+    """The panel of a topic, its blocks or why there are none, and the arrays of the motions that they play.
+
+    Parameters
+    ----------
+    room : how wide its pictures may be, in points of their letters; as in a document if that is no number
+    """
     topic = topic_named(name)
     try:
         sheet, description = topic_sheet(document, topic, options, samples, plays=True)
@@ -149,6 +158,7 @@ def panel_of(
             mathematics_of(description),
             pictures=shows,
             sentences=with_panel_titles,
+            width=_inches(room),
         )
         motions, arrays = player_frames(render.panel_motions(sheet))
     except CentrodeError as failure:
@@ -160,6 +170,13 @@ def panel_of(
             "repair": repair,
         }, {}
     return {"topic": topic.name, "title": _(topic.title), "blocks": blocks, "motions": motions}, arrays
+
+
+def _inches(room: object) -> float | None:
+    """A room in points as a width of figures."""
+    if isinstance(room, bool) or not isinstance(room, int | float) or not 0.0 < room < MOST_ROOM:
+        return None
+    return room / POINTS
 
 
 def topic_sheet(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 import numpy as np
 
 from centrode import render
+from centrode.render.drawing.figure_room import screen_of_width
 from centrode.render.plain_formulas import relation_lines, symbol_lines, system_lines
 from centrode.render.spelling import ScreenSpelling
 from centrode.render.terminal import symbol_texts
@@ -62,6 +63,7 @@ def panel_blocks(
     *,
     pictures: bool = True,
     sentences: Callable[[str], str] = str,
+    width: float | None = None,
 ) -> list[JSON]:
     """What a page shows of a sheet: its facts, what a terminal prints below them, its pictures and its notes.
 
@@ -69,6 +71,7 @@ def panel_blocks(
     ----------
     mathematics : formulas as MathML; without it they are spelled as on a terminal
     sentences : what the page makes of a translated sentence before its holes are filled
+    width : room of the page for a picture [inch], at the size that letters have on it; that of a document if None
     """
     writer = _BlockWriter(display, mathematics, sentences)
     blocks: list[JSON] = []
@@ -87,8 +90,9 @@ def panel_blocks(
     for arrows in sheet.arrows.values():
         blocks.append(writer.arrows(arrows))
     if pictures:
-        for name in [*sheet.pictures][:PICTURES]:
-            blocks += writer.picture(name, sheet.pictures[name])
+        with screen_of_width(width):
+            for name in [*sheet.pictures][:PICTURES]:
+                blocks += writer.picture(name, sheet.pictures[name])
     blocks += [{"kind": "paragraph", "text": writer.spelling.text(note)} for note in sheet.notes]
     writer.set_formulas()
     return blocks

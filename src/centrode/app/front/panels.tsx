@@ -5,10 +5,9 @@ import { CamPanel } from "./cam";
 import { CourseView } from "./courses";
 import { ChartView, Missing, MotionPanel, signed } from "./motion_panel";
 import type { Block, Panel, TopicOption } from "./protocol";
-import { arrows, available, hello, options, panelKey, panels, played, playedPlace, readiness, scene, selection, show, topic, waits } from "./state";
+import { arrows, available, hello, LEAST_SCALE, measurePanel, MOST_SCALE, options, panelKey, panels, played, playedPlace, readiness, scene, selection, show, topic, waits } from "./state";
 import { fixed, say, sentence, spelled, typeset } from "./words";
 
-const LEAST_SCALE = 1.15, MOST_SCALE = 1.75; // pixels of a point of paper
 // Markup of the server's pictures and formulas, without anything that could act.
 export function Markup({ text, className, label }: { text: string; className: string; label?: string }) {
   const holder = useRef<HTMLDivElement>(null);
@@ -238,6 +237,7 @@ export const tabs = (): Tab[] => {
   return [...own, ...known.map((one) => ({ name: one.name, title: one.title })).sort((a, b) => there(a) - there(b))];
 };
 
+const EDGES = 2; // pixels of the border of a figure
 const others = signal(false); // whether tabs of topics are shown that the description does not have
 
 export function PanelCard() {
@@ -246,6 +246,21 @@ export function PanelCard() {
   useEffect(() => {
     if (scene.value && topic.value !== now) topic.value = now;
   }, [now, scene.value]);
+  const body = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    const element = body.current!;
+    let soon = 0;
+    measurePanel(element.clientWidth - EDGES);
+    const watch = new ResizeObserver(() => { // not at every step of a hand that moves an edge of the window
+      clearTimeout(soon);
+      soon = window.setTimeout(() => measurePanel(element.clientWidth - EDGES), 200);
+    });
+    watch.observe(element);
+    return () => {
+      clearTimeout(soon);
+      watch.disconnect();
+    };
+  }, []);
   const go = (event: KeyboardEvent): void => {
     const by = event.key === "ArrowRight" || event.key === "ArrowDown" ? 1 : event.key === "ArrowLeft" || event.key === "ArrowUp" ? -1 : 0;
     const at = shown.findIndex((one) => one.name === now), next = event.key === "Home" ? 0 : event.key === "End" ? shown.length - 1 : (at + by + shown.length) % shown.length;
@@ -266,7 +281,7 @@ export function PanelCard() {
         ))}
       </div>
       {away > 0 && <button type="button" class="others" aria-expanded={others.value} onClick={() => { others.value = !others.value; }}>{say("other_topics", { count: away })}</button>}
-      <div role="tabpanel" id="panel" aria-labelledby={`tab-${now}`} tabindex={0} class="panel-body" data-topic={now} data-ready={now === "motion" || now === "cam" || available(now) !== true || panels.value.has(panelKey(now))}>
+      <div role="tabpanel" id="panel" ref={body} aria-labelledby={`tab-${now}`} tabindex={0} class="panel-body" data-topic={now} data-ready={now === "motion" || now === "cam" || available(now) !== true || panels.value.has(panelKey(now))}>
         {waits.value !== null && <div class="waiting" role="presentation" />}
         {now === "motion" ? <MotionPanel /> : now === "cam" ? <CamPanel /> : <ServerPanel name={now} key={now} />}
       </div>

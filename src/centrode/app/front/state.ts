@@ -218,17 +218,26 @@ async function renew(): Promise<void> {
   void show();
 }
 
-export const panelKey = (name: string): string => `${language.value} ${digest.value} ${name} ${JSON.stringify(options.value[name] ?? {})}`;
+// Figures are drawn for the width of the panel, so that their letters are as great as those about them.
+export const LEAST_SCALE = 1.15, MOST_SCALE = 1.75; // pixels of a point of a figure
+export const panelWidth = signal(0); // pixels; none until the panel is there
+const WIDTHS = 40, SLACK = 24, WIDEST = 720; // steps of widths; how far one is passed before the next is taken; figures are no wider
+export function measurePanel(wide: number): void {
+  const step = Math.min(WIDEST, Math.floor(wide / WIDTHS) * WIDTHS), now = panelWidth.peek();
+  // a scroll bar that comes and goes changes nothing
+  if (wide > 0 && step !== now && (wide < now || wide >= now + WIDTHS + SLACK || !now)) panelWidth.value = step;
+}
+export const panelKey = (name: string): string => `${language.value} ${digest.value} ${name} ${panelWidth.value} ${JSON.stringify(options.value[name] ?? {})}`;
 export const available = (name: string): true | string => scene.value?.topics?.[name] ?? true;
 
 // Asks for the open panel where it is not there yet.
 export async function show(): Promise<void> {
   const name = topic.value;
-  if (!hello.value || name === "motion" || name === "readiness" || name === "cam" || !digest.value) return;
+  if (!hello.value || name === "motion" || name === "readiness" || name === "cam" || !digest.value || !panelWidth.value) return;
   const key = panelKey(name);
   if (panels.value.has(key) || waits.value === key || available(name) !== true) return;
   waits.value = key;
-  const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {}, samples: SAMPLES }, "panel");
+  const answer = await ask({ do: "panel", digest: digest.value, topic: name, options: options.value[name] ?? {}, samples: SAMPLES, room: Math.floor(panelWidth.value / LEAST_SCALE) }, "panel");
   if (waits.value === key) waits.value = null;
   if (answer === SUPERSEDED) return;
   const panel: Panel = answer.error ? { topic: name, title: name, blocks: [], missing: answer.error.message, repair: answer.error.repair }
@@ -266,6 +275,7 @@ effect(() => {
 effect(() => {
   topic.value;
   options.value;
+  panelWidth.value;
   language.value;
   queueMicrotask(() => void show());
 });

@@ -11,14 +11,15 @@ from matplotlib.transforms import Bbox
 
 from centrode.render.document.blocks import Picture
 from centrode.render.document.figures import svg_of
+from centrode.render.drawing.figure_room import screen_width
 from centrode.render.drawing.looks import either_look, screen_figure
 from centrode.render.drawing.style import house_style
 from centrode.render.figures.document_canvas import MeasuringCanvas
 from centrode.render.figures.files import spell_decimals
 from centrode.render.pages.force_polygons import drawing_end
-from centrode.render.pages.instants import DRAWING as INSTANT
-from centrode.render.pages.positions import DRAWING as POSITIONS
-from centrode.render.pages.several_instants import DRAWING as INSTANTS
+from centrode.render.pages.instants import drawing_end as instant_end
+from centrode.render.pages.positions import drawing_end as positions_end
+from centrode.render.pages.several_instants import drawing_end as instants_end
 from centrode.sheets.force_pages import GroupPage, LeverPage
 from centrode.sheets.pages import InstantPage, InstantsPage, PositionsPage, VectorDiagramPage
 from centrode.sheets.pictures import Picture as AnyPicture
@@ -36,13 +37,15 @@ def page_end(page: Pages, figure: Figure) -> tuple[float, float]:
     """Where the drawing of a page ends at its column of text, and at its head [mm]."""
     match page:
         case GroupPage() | LeverPage():
-            return drawing_end(page)
+            return drawing_end(page, figure)
         case InstantsPage():
-            return INSTANTS
+            return instants_end()
         case PositionsPage():
-            return POSITIONS
+            return positions_end()
         case InstantPage() | VectorDiagramPage():
-            return INSTANT
+            return instant_end()
+        case VectorPage() if screen_width() is not None:
+            return instant_end()
         case VectorPage():  # only what is empty is cut off
             return figure.get_figwidth() * INCH, figure.get_figheight() * INCH
         case _:

@@ -46,8 +46,6 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 # Sizes [inch] and [pt] on paper, and widths of lines [pt].
 
-PAGE_WIDTH, PAGE_HEIGHT = 6.3, 8.2
-"""The most a figure may take of a page: the width of the text, and its height less a caption."""
 LEAST_POINTS = 7.0
 """No text is smaller."""
 TITLE, LABEL, NAME, SMALL = 10.0, 8.5, 8.0, 7.2

@@ -15,8 +15,9 @@ from matplotlib.patches import Circle, Polygon
 from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.render.drawing.colours import CARRIER
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.signs import ground, slider
-from centrode.render.drawing.style import CENTRE_LINE, GROUND, INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, PALETTE
+from centrode.render.drawing.style import CENTRE_LINE, GROUND, INK, MUTED, PALETTE
 from centrode.render.drawing.texts import label_with_unit
 from centrode.render.figures.curves import write_title
 from centrode.render.spelling import DrawingSpelling
@@ -162,10 +163,12 @@ def wheel_figure(positions: WheelPositions, display: Display) -> Figure:
     spelling = DrawingSpelling(display)
     factor, unit = shown_as("m", display)
     turned = positions.turned[:MOST_INSTANTS]
-    columns = min(COLUMNS, len(turned))
+    columns = min(count_across(COLUMNS), len(turned))
     rows = -(-len(turned) // columns)
-    high = min(3.0, PAGE_WIDTH / columns)
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, (high + 0.2) * rows + 1.1)), layout="constrained")
+    high = min(3.0, figure_width() / columns)
+    figure = Figure(
+        figsize=(figure_width(), min(PAGE_HEIGHT, (high + 0.2) * rows + 1.1)), layout="constrained"
+    )
     grid = figure.subplots(rows, columns, squeeze=False).reshape(-1)
     for axes in grid[len(turned) :]:
         axes.set_visible(False)
@@ -178,7 +181,10 @@ def wheel_figure(positions: WheelPositions, display: Display) -> Figure:
     grid[0].set_ylabel(label_with_unit("y", unit))
     keys = wheel_keys()
     figure.legend(
-        [key for key, _name in keys], [name for _key, name in keys], loc="outside lower center", ncols=4
+        [key for key, _name in keys],
+        [name for _key, name in keys],
+        loc="outside lower center",
+        ncols=count_across(4),
     )
     write_title(figure, spelling.text(positions.title), spelling.text(positions.mechanism))
     return figure

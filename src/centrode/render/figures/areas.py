@@ -11,13 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.style import (
     APPROXIMATE,
     CURVE,
     INK,
     MUTED,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     PALETTE,
     Decimals,
 )
@@ -59,9 +58,9 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     inches = TALLEST if many else PANEL_INCHES
     beside = column_width(texts) if many else legend_width(texts)
     above = 0.0 if many else legend_height(texts)
-    wide, high = _inches(diagram, PAGE_WIDTH - EDGES - beside, min(TALLEST, PAGE_HEIGHT - HEAD - above))
+    wide, high = _inches(diagram, figure_width() - EDGES - beside, min(TALLEST, PAGE_HEIGHT - HEAD - above))
     least = ENTRY * len(texts) if many else 0.0
-    figure = Figure(figsize=(PAGE_WIDTH, max(high, least) + HEAD + above), layout="constrained")
+    figure = Figure(figsize=(figure_width(), max(high, least) + HEAD + above), layout="constrained")
     axes = figure.subplots()
     axes.set_box_aspect(high / wide)
     shown = [area for area in diagram.areas if (area.levels > 0.0).any()]
@@ -81,7 +80,7 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     axes.set_ylim(float(y[0]), float(y[-1]))
     for values, unit, label, axis in ((x, x_unit, x_label, axes.xaxis), (y, y_unit, y_label, axes.yaxis)):
         axis.set_major_formatter(Decimals())
-        angle_ticks(axis, float(values[0]), float(values[-1]), unit, 9)
+        angle_ticks(axis, float(values[0]), float(values[-1]), unit, count_across(9))
         axis.set_label_text(label)
     write_legend(axes, key, inches=inches, beside=True if many else None)
     write_title(figure, spelling.text(diagram.title), words.text(diagram.mechanism))

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.render.drawing import signs
-from centrode.render.drawing.style import INK, LINK, NAME, PAGE_WIDTH, THIN
+from centrode.render.drawing.figure_room import count_across, figure_width
+from centrode.render.drawing.style import INK, LINK, NAME, THIN
 from centrode.render.figures.curves import write_title
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.sheets.chain_atlas import AtlasCell, ChainAtlas
@@ -28,22 +29,23 @@ BODY = "#DCE6EE"
 
 def atlas_figure(atlas: ChainAtlas, display: Display) -> Figure:
     """Sketches in rows below the title, each with its name."""
-    columns = min(COLUMNS, len(atlas.cells))
+    most = count_across(COLUMNS)
+    columns = min(most, len(atlas.cells))
     rows = math.ceil(len(atlas.cells) / columns)
     high = rows * (SIDE + BELOW) + HEAD
-    figure = Figure(figsize=(PAGE_WIDTH, high))
-    wide = PAGE_WIDTH / COLUMNS
-    left = (PAGE_WIDTH - columns * wide) / 2.0
+    figure = Figure(figsize=(figure_width(), high))
+    wide = figure_width() / most
+    left = (figure_width() - columns * wide) / 2.0
     reach = SIGN + 0.52 * max(float(np.ptp(cell.places, axis=0).max()) for cell in atlas.cells)
     words = PrintSpelling(display)
     for number, cell in enumerate(atlas.cells):
         row, column = divmod(number, columns)
         x = left + column * wide + (wide - SIDE) / 2.0
         y = high - HEAD - row * (SIDE + BELOW) - SIDE
-        axes = figure.add_axes((x / PAGE_WIDTH, y / high, SIDE / PAGE_WIDTH, SIDE / high))
+        axes = figure.add_axes((x / figure_width(), y / high, SIDE / figure_width(), SIDE / high))
         _draw_cell(axes, cell, reach)
         figure.text(
-            (x + SIDE / 2.0) / PAGE_WIDTH,
+            (x + SIDE / 2.0) / figure_width(),
             (y - 0.06) / high,
             words.text(cell.name),
             size=NAME,

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from centrode.locale import _
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, figure_width
 from centrode.render.drawing.linkage import draw_mechanism
 from centrode.render.drawing.style import (
     APPROXIMATE,
@@ -20,8 +21,6 @@ from centrode.render.drawing.style import (
     DOTS,
     INK,
     MUTED,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     PALETTE,
     THIN,
     Decimals,
@@ -78,10 +77,12 @@ def hodograph_figure(hodograph: Hodograph, display: Display) -> Figure:
     size = np.ptp(np.concatenate([ends for _one, _pen, ends in curves]), axis=0)
     names = [PrintSpelling(display).text(one.name) for one in hodograph.curves]
     beside, above = legend_width(names, LEAST), legend_height(names, inches=LEAST)
-    room = np.array([PAGE_WIDTH - beside - 0.8, MOST])
+    room = np.array([figure_width() - beside - 0.8, MOST])
     tiny = np.finfo(float).tiny
     inches = size * float(np.min(room / np.maximum(size, tiny)))
-    figure = Figure(figsize=(PAGE_WIDTH, max(float(inches[1]), LEAST) + above + 1.1), layout="constrained")
+    figure = Figure(
+        figsize=(figure_width(), max(float(inches[1]), LEAST) + above + 1.1), layout="constrained"
+    )
     axes = figure.subplots()
     key: list[tuple[Artist, str]] = []
     for (one, pen, ends), name in zip(curves, names, strict=True):
@@ -106,7 +107,7 @@ def bar_figure(chart: BarChart, display: Display) -> Figure:
     """Panels of bars below each other; the legend stands in the first."""
     spelling = FigureSpelling(display)
     figure = Figure(
-        figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, 1.0 + BARS * len(chart.panels))), layout="constrained"
+        figsize=(figure_width(), min(PAGE_HEIGHT, 1.0 + BARS * len(chart.panels))), layout="constrained"
     )
     rows = figure.subplots(len(chart.panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(rows, chart.panels, strict=True):
@@ -149,7 +150,7 @@ def named_bar_figure(chart: NamedBarChart, display: Display) -> Figure:
     spelling, words = FigureSpelling(display), PrintSpelling(display)
     factor, label, _unit = spelling.label(chart.across)
     heights = [BAR * len(panel.names) + 0.35 for panel in chart.panels]
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, sum(heights) + 1.0)), layout="constrained")
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, sum(heights) + 1.0)), layout="constrained")
     rows = figure.subplots(len(chart.panels), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     for number, (axes, panel) in enumerate(zip(rows, chart.panels, strict=True)):
         places = np.arange(len(panel.names))
@@ -173,7 +174,7 @@ def histogram_figure(chart: Histograms, display: Display) -> Figure:
     names = [words.text(name) for panel in chart.panels for name, _value in panel.levels]
     above = legend_height(list(dict.fromkeys(names)), inches=BARS)
     height = 1.0 + (BARS + 0.5 + above) * len(chart.panels)
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, height)), layout="constrained")
     rows = figure.subplots(len(chart.panels), 1, squeeze=False)[:, 0]
     for axes, panel in zip(rows, chart.panels, strict=True):
         _draw_histogram(axes, panel, display)
@@ -207,10 +208,10 @@ def linkage_figure(drawing: LinkageWithDiscs, display: Display) -> Figure:
     colours = pens(drawing.description.link_names)
     names = [PrintSpelling(display).text(one.name) for one in drawing.discs]
     beside = legend_width(names) if names else 0.0
-    room = np.array([PAGE_WIDTH - 0.9 - beside, MOST])
+    room = np.array([figure_width() - 0.9 - beside, MOST])
     scene = replace(scene, inches=float(np.min(room * scene.extent / size)))
     height = scene.inches * float(size[1]) / scene.extent
-    figure = Figure(figsize=(PAGE_WIDTH, height + 1.35 + legend_height(names)), layout="constrained")
+    figure = Figure(figsize=(figure_width(), height + 1.35 + legend_height(names)), layout="constrained")
     axes = figure.subplots()
     draw_mechanism(axes, scene, sample)
     key: list[tuple[Artist, str]] = []
@@ -267,7 +268,7 @@ def front_figure(diagram: FrontDiagram, display: Display) -> Figure:
     first, *below = diagram.panels
     names = [_("best designs"), *(words.text(dot.name) for dot in first.dots)]
     height = HIGH + LOW * len(below) + 0.9 + legend_height(names, inches=HIGH)
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout="constrained")
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, height)), layout="constrained")
     rows = figure.subplots(
         len(diagram.panels), 1, sharex=True, height_ratios=[HIGH, *([LOW] * len(below))], squeeze=False
     )[:, 0]

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.render.drawing.style import INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, Decimals, numbered_pen
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
+from centrode.render.drawing.style import INK, MUTED, Decimals, numbered_pen
 from centrode.render.figures.curves import write_title
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 
@@ -29,10 +30,10 @@ def map_figure(chart: CurveMap, display: Display) -> Figure:
     """Panels in at most two columns, each with equal scales of both axes."""
     spelling = FigureSpelling(display)
     count = len(chart.panels)
-    columns = min(COLUMNS, count)
+    columns = min(count_across(COLUMNS), count)
     rows = -(-count // columns)
     high = HIGH if columns > 1 else 1.5 * HIGH
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, rows * high + 0.8)), layout="constrained")
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, rows * high + 0.8)), layout="constrained")
     places = figure.subplots(rows, columns, squeeze=False).ravel()
     factor, x_label, _unit = spelling.label(chart.x)
     _factor, y_label, _unit = spelling.label(chart.y)
@@ -47,7 +48,9 @@ def map_figure(chart: CurveMap, display: Display) -> Figure:
     if any(len(panel.targets) for panel in chart.panels):
         dot = Line2D([], [], color=INK, marker="o", markerfacecolor="none", markersize=4, linestyle="none")
         names[spelling.text(chart.target)] = dot
-    figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=min(4, len(names)))
+    figure.legend(
+        names.values(), names.keys(), loc="outside lower center", ncols=min(count_across(4), len(names))
+    )
     write_title(figure, spelling.text(chart.title), PrintSpelling(display).text(chart.mechanism))
     return figure
 

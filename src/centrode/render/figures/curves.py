@@ -18,6 +18,7 @@ from matplotlib.ticker import FuncFormatter, Locator, MultipleLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.style import (
     CENTRE_LINE,
     CURVE,
@@ -29,8 +30,6 @@ from centrode.render.drawing.style import (
     LETTER,
     MUTED,
     NAME,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     PALETTE,
     SMALL,
     THIN,
@@ -207,7 +206,7 @@ def sheet(
 ) -> Figure:
     """A figure of panels in rows and columns, all over the same abscissa."""
     columns = max(map(len, rows))
-    width = PAGE_WIDTH / columns
+    width = figure_width() / columns
     # all legends of a figure stand on the same side
     beside = all(
         stands_beside(with_events([*panel.curves, *panel.areas]), PANEL_INCHES, width)
@@ -223,7 +222,7 @@ def sheet(
     ]
     each = LONE_INCHES if len(rows) == 1 else PANEL_INCHES
     height = min(PAGE_HEIGHT, ABOVE_INCHES + each * len(rows) + sum(above))
-    figure = Figure(figsize=(PAGE_WIDTH, height), layout=GridLayout())
+    figure = Figure(figsize=(figure_width(), height), layout=GridLayout())
     grid = figure.subplots(len(rows), columns, sharex=True, squeeze=False)
     told = False
     for row, (axes_row, panels) in enumerate(zip(grid, rows, strict=True)):
@@ -359,7 +358,7 @@ def set_range(axes: Axes, panel: QuantityCurves, abscissa: DrawnAbscissa) -> Non
     if abscissa.range is not None:
         axes.set_xlim(abscissa.range)
         place = axes.get_subplotspec()
-        most = TICKS if place is None else TICKS // place.get_gridspec().ncols
+        most = count_across(TICKS) // (1 if place is None else place.get_gridspec().ncols)
         angle_ticks(axes.xaxis, *abscissa.range, abscissa.unit, most)
     heights = np.concatenate([np.empty(0), *(curve[abscissa.order] for curve in panel.curves.values())])
     heights = heights[np.isfinite(heights)]
@@ -485,16 +484,16 @@ def with_events(names: Sequence[str]) -> list[str]:
     return [*names, _("limit"), _("change point"), _("cut off")]
 
 
-def legend_height(names: Sequence[str], width: float = PAGE_WIDTH, inches: float = PANEL_INCHES) -> float:
+def legend_height(names: Sequence[str], width: float | None = None, inches: float = PANEL_INCHES) -> float:
     """Room [inch] that a legend of these names needs above its axes; none where it stands beside them."""
-    texts = with_events(names)
-    return 0.0 if stands_beside(texts, inches, width) else _height(names or texts, width)
+    texts, room = with_events(names), figure_width() if width is None else width
+    return 0.0 if stands_beside(texts, inches, room) else _height(names or texts, room)
 
 
-def legend_width(names: Sequence[str], inches: float = PANEL_INCHES, width: float = PAGE_WIDTH) -> float:
+def legend_width(names: Sequence[str], inches: float = PANEL_INCHES, width: float | None = None) -> float:
     """Room [inch] that a legend of these names needs beside its axes; none where it stands above them."""
     texts = with_events(names)
-    if not stands_beside(texts, inches, width):
+    if not stands_beside(texts, inches, figure_width() if width is None else width):
         return 0.0
     return legend_columns(len(texts), inches) * column_width(texts)
 

@@ -17,6 +17,7 @@ from centrode.locale import _
 from centrode.model.motion_parameter import TIME, MotionVariable
 from centrode.model.settings import shown_as
 from centrode.quantities import spelled_unit, status_word, with_unit
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.globe import draw_globe
 from centrode.render.drawing.linkage import MARGIN, draw_mechanism
 from centrode.render.drawing.style import (
@@ -24,8 +25,6 @@ from centrode.render.drawing.style import (
     HIDDEN,
     LINK,
     MUTED,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     Decimals,
     Pen,
     marker_options,
@@ -67,7 +66,7 @@ def mechanism_figure(picture: MechanismPicture, display: Display) -> Figure:
     scene = read_scene(picture.mechanism, dataset)
     samples = [nearest_sample(scene.mechanism, dataset, value) for value in picture.values]
     samples = samples or [initial_sample(scene, dataset)]
-    columns = 2 if len(samples) == 4 else min(COLUMNS, len(samples))
+    columns = min(2 if len(samples) == 4 else len(samples), count_across(COLUMNS))
     rows = -(-len(samples) // columns)
     scene, figure = place_on_paper(scene, scene.mechanism.link_names, rows, columns)
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -146,11 +145,11 @@ def place_on_paper(
     """The scene at the size that it gets on paper, and an empty figure in its proportions."""
     beside, above = legend_width(names, 3.0), legend_height(names, inches=3.0)
     # what labels and titles leave of the page, and the proportions of the scene
-    room = np.array([PAGE_WIDTH - beside, PAGE_HEIGHT - above - HEAD]) / (columns, rows) - BESIDE
+    room = np.array([figure_width() - beside, PAGE_HEIGHT - above - HEAD]) / (columns, rows) - BESIDE
     sides = (scene.high - scene.low) / scene.extent + 2 * MARGIN
     inches = min(INCHES, float(np.min(room / sides)))
     height = rows * (inches * float(sides[1]) + BESIDE[1]) + above + HEAD
-    return replace(scene, inches=inches), Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
+    return replace(scene, inches=inches), Figure(figsize=(figure_width(), height), layout="constrained")
 
 
 def label_lengths(axes: Axes, scene: LinkageScene) -> None:

@@ -11,13 +11,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from centrode.model.settings import shown_as
+from centrode.render.drawing.figure_room import figure_width
 from centrode.render.drawing.signs import cross, fixed_hinge, ground, turning_arrow
 from centrode.render.drawing.style import (
     CENTRE_LINE,
     GROUND,
     INK,
     MUTED,
-    PAGE_WIDTH,
     PALETTE,
     SMALL,
     Decimals,
@@ -69,7 +69,7 @@ def outline_figure(drawing: OutlineDrawing, display: Display) -> Figure:
     """A body between its outlines, lengths in the unit of the display."""
     spelling = DrawingSpelling(display)
     factor, unit = shown_as("m", display)
-    figure = Figure(figsize=(PAGE_WIDTH, HEIGHT), layout="constrained")
+    figure = Figure(figsize=(figure_width(), HEIGHT), layout="constrained")
     axes = figure.subplots()
     key: list[tuple[Artist, str]] = []
     for layer, pieces in group_by_layer(drawing.pieces).items():
@@ -182,9 +182,9 @@ def path_figure(drawing: PathDrawing, display: Display) -> Figure:
     with_origin = np.concatenate([places[np.isfinite(places).all(axis=1)], np.zeros((1, 2))])
     width, height = np.ptp(with_origin, axis=0).tolist()
     names = [spelling.text(one) for one in (drawing.path, drawing.ray, drawing.normal)]
-    room = 0.78 * (PAGE_WIDTH - legend_width(names)) - 0.7
+    room = 0.78 * (figure_width() - legend_width(names)) - 0.7
     scale = min(room / (width or 1.0), PATH_INCHES / (height or 1.0))
-    size = (PAGE_WIDTH, max(1.3 * scale * height + 1.0, 2.4) + legend_height(names))
+    size = (figure_width(), max(1.3 * scale * height + 1.0, 2.4) + legend_height(names))
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots()
     far = BESIDE * float(np.hypot(*with_origin.T).max())

@@ -12,7 +12,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.render.drawing.style import HAIR, INK, MUTED, PAGE_HEIGHT, PAGE_WIDTH, PALETTE, SMALL, Decimals
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
+from centrode.render.drawing.style import HAIR, INK, MUTED, PALETTE, SMALL, Decimals
 from centrode.render.drawing.tags import WIDE, label_places
 from centrode.render.figures.curves import say_nothing_known, write_title
 from centrode.render.spelling import DrawingSpelling, FigureSpelling, PrintSpelling
@@ -43,10 +44,10 @@ DEPTH = 0.42
 def grid_figure(grid: PanelGrid, display: Display) -> Figure:
     """A figure of panels in at most three columns."""
     count, spelling = len(grid.panels), FigureSpelling(display)
-    columns = 2 if count == 4 else min(COLUMNS, count)
+    columns = min(2 if count == 4 else count, count_across(COLUMNS))
     rows = -(-count // columns)
-    high = PAGE_WIDTH / max(columns, 2) + 0.25
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, rows * high + 0.5)), layout="constrained")
+    high = figure_width() / max(columns, 2) + 0.25
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, rows * high + 0.5)), layout="constrained")
     places = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, panel in zip(places, grid.panels, strict=False):
         match panel:
@@ -57,7 +58,7 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
             case _:
                 assert_never(panel)
         lines = spelling.text(panel.name).splitlines()
-        axes.set_title("\n".join(fill(line, LETTERS // columns) for line in lines))
+        axes.set_title("\n".join(fill(line, count_across(LETTERS) // columns) for line in lines))
     for axes in places[count:]:
         axes.set_axis_off()
     for row in range(rows):  # one label serves a row and a column of panels

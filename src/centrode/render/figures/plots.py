@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.style import (
     APPROXIMATE,
     CENTRE_LINE,
     INK,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     PALETTE,
     SMALL,
     THIN,
@@ -48,6 +47,7 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.plots import Abscissa, Curve, CurveDiagram, CurvePanel, Overlay, Plot, Trace
 
+Rows: TypeAlias = "tuple[tuple[CurvePanel, ...], ...]"
 INCHES = 3.4
 """Height of a diagram's axes, which its legend may take."""
 COLOURED = PALETTE[:-1]
@@ -92,18 +92,29 @@ def plot_figure(plot: Plot, display: Display) -> Figure:
 
 
 def _turn_columns(plot: Plot) -> Plot:
-    """The plot with its columns as rows where it has more columns than find room; names stand beside the last."""
-    if max(map(len, plot.rows)) <= COLUMNS:
+    """The plot with its columns as rows where it has more columns than find room; names stand beside the last.
+
+    A figure that is narrower than a page has one column.
+    """
+    columns = max(map(len, plot.rows))
+    if count_across(COLUMNS) < columns <= COLUMNS:
+        return _with_rows(plot, lambda rows: tuple((panel,) for row in rows for panel in row))
+    if columns <= COLUMNS:
         return plot
 
-    def turn(rows: tuple[tuple[CurvePanel, ...], ...]) -> tuple[tuple[CurvePanel, ...], ...]:
+    def turn(rows: Rows) -> Rows:
         return tuple(
             tuple(replace(panel, legend=panel is row[-1] and row[0].legend) for panel in row)
             for row in zip(*rows, strict=True)
         )
 
-    overlay = plot.overlay and replace(plot.overlay, rows=turn(plot.overlay.rows))
-    return replace(plot, rows=turn(plot.rows), overlay=overlay)
+    return _with_rows(plot, turn)
+
+
+def _with_rows(plot: Plot, arrange: Callable[[Rows], Rows]) -> Plot:
+    """The plot with its panels in other rows, and those of what lies over it."""
+    overlay = plot.overlay and replace(plot.overlay, rows=arrange(plot.overlay.rows))
+    return replace(plot, rows=arrange(plot.rows), overlay=overlay)
 
 
 def _add_bands(axes: Axes, panel: CurvePanel, abscissa: DrawnAbscissa, spelling: FigureSpelling) -> None:
@@ -188,7 +199,7 @@ def _sizes(panels: Sequence[QuantityCurves], abscissa: DrawnAbscissa, least: flo
     """Panels below each other with the sizes of their curves on logarithmic scales."""
     each = LONE_INCHES if len(panels) == 1 else PANEL_INCHES
     height = ABOVE_INCHES + sum(each + legend_height(list(panel.curves)) for panel in panels)
-    figure = Figure(figsize=(PAGE_WIDTH, min(PAGE_HEIGHT, height)), layout=GridLayout())
+    figure = Figure(figsize=(figure_width(), min(PAGE_HEIGHT, height)), layout=GridLayout())
     grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
     for axes, panel in zip(grid.ravel(), panels, strict=True):
         handles: list[tuple[Artist, str]] = []
@@ -208,7 +219,7 @@ def _sizes(panels: Sequence[QuantityCurves], abscissa: DrawnAbscissa, least: flo
         axes.margins(y=0.12)  # the lowest power stands clear of the ticks below
         if abscissa.range is not None:
             axes.set_xlim(abscissa.range)
-            angle_ticks(axes.xaxis, *abscissa.range, abscissa.unit, TICKS)
+            angle_ticks(axes.xaxis, *abscissa.range, abscissa.unit, count_across(TICKS))
         axes.set_ylabel(panel.label)
         wrap_label(axes, each)
         write_legend(axes, handles)
@@ -259,7 +270,7 @@ def diagram_figure(diagram: CurveDiagram, display: Display) -> Figure:
     up, y_label, _unit = spelling.label(diagram.y)
     names = [PrintSpelling(display).text(trace.name) for trace in diagram.traces]
     height = INCHES + ABOVE_INCHES + legend_height(names, inches=INCHES)
-    figure = Figure(figsize=(PAGE_WIDTH, height), layout=GridLayout())
+    figure = Figure(figsize=(figure_width(), height), layout=GridLayout())
     axes = figure.subplots()
     key = [
         _trace(axes, trace, place, (across, up), PrintSpelling(display))

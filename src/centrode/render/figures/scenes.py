@@ -13,13 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _, ngettext
+from centrode.render.drawing.figure_room import PAGE_WIDTH, figure_width
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe, draw_line
 from centrode.render.drawing.linkage import draw_mechanism
-from centrode.render.drawing.style import INK, LINK, MUTED, NAME, PAGE_WIDTH, SMALL, marker_options, pens
+from centrode.render.drawing.style import INK, LINK, MUTED, NAME, SMALL, marker_options, pens
 from centrode.render.drawing.tags import Tag, drive_arcs, lines, write_tags
 from centrode.render.drawing.texts import plain
 from centrode.render.drawing.window import carried_by, segments_of, widen, within
-from centrode.render.figures.curves import write_title
+from centrode.render.figures.curves import columns_above, write_title
 from centrode.render.figures.linkages import caption, initial_sample, label_lengths
 from centrode.render.spelling import FigureSpelling, PrintSpelling
 from centrode.scenes.linkage import scene_of
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from centrode.sheets.scenes import CarriedCurve, CircleDiagram, Scene, SceneNote, StraightLine
 
 Segments: TypeAlias = list[tuple[Array, Array]]
+Size: TypeAlias = tuple[float, float]
+Box: TypeAlias = tuple[float, float, float, float]
 
 HEIGHT = 4.9
 """Of a figure [inch]."""
@@ -40,6 +43,8 @@ LEFT, BOTTOM, UP = 0.105, 0.1, 0.76
 """Where the drawing stands, as parts of the figure."""
 ACROSS, BESIDE_LEGEND, BESIDE_DIAGRAM = 0.62, 0.58, 0.51
 """Width of the drawing beside two lines of a legend, beside more of them, and beside a circle diagram."""
+COLUMN, LINE, CAPTION = 2.3, 0.21, 0.3
+"""Inches of a narrow figure: a circle diagram with its key below the drawing, a line of a legend, the caption above."""
 CENTRE, FOUND = "#A00000", "#0072B2"
 TOGETHER = {"plane": 0.3, "sphere": 0.5}
 """Places nearer than this share one text, in radii of a hinge."""
@@ -91,8 +96,8 @@ class _Drawing:
     def __init__(self, scene: Scene, display: Display) -> None:
         self.scene = scene
         self.spelling = FigureSpelling(display)
-        across = BESIDE_DIAGRAM if scene.diagram else ACROSS if len(scene.legend) <= 2 else BESIDE_LEGEND
-        self.box = (LEFT, BOTTOM, across, UP)
+        self.is_narrow = figure_width() < PAGE_WIDTH
+        self.size, self.box = self._narrow_place() if self.is_narrow else self._place()
         linkage = scene.linkage
         self.linkage, self.mechanism = linkage, linkage.description
         self.paper = self._paper()
@@ -101,7 +106,7 @@ class _Drawing:
     def figure(self) -> Figure:
         """Draw everything."""
         scene, paper = self.scene, self.paper
-        figure = Figure(figsize=(PAGE_WIDTH, HEIGHT))
+        figure = Figure(figsize=self.size)
         axes = figure.add_axes(self.box)
         if isinstance(paper, Globe):
             draw_globe(axes, paper, self.sample, names=False)
@@ -128,7 +133,7 @@ class _Drawing:
         reach = 72 * paper.sign * paper.inches / paper.extent
         write_tags(axes, [*self._tags(marks), *self._branches(axes, curves)], solid, thin, NAME, reach)
         if scene.diagram is None:
-            self._write_legend(axes)
+            self._write_legend(figure, axes)
         else:
             self._draw_column(figure, scene.diagram, [one.mark for one in marks])
         title = PrintSpelling(self.spelling.display).text(scene.mechanism)
@@ -136,6 +141,31 @@ class _Drawing:
         return figure
 
     # where things are
+
+    def _place(self) -> tuple[Size, Box]:
+        """Sides of the figure [inch], and the place of the drawing as parts of them, all else on its right."""
+        scene = self.scene
+        across = BESIDE_DIAGRAM if scene.diagram else ACROSS if len(scene.legend) <= 2 else BESIDE_LEGEND
+        return (PAGE_WIDTH, HEIGHT), (LEFT, BOTTOM, across, UP)
+
+    def _narrow_place(self) -> tuple[Size, Box]:
+        """The same where all else finds room below the drawing alone."""
+        width, edge = figure_width(), LEFT * PAGE_WIDTH
+        below = COLUMN if self.scene.diagram else LINE * self._legend_rows()[1]
+        height = HEIGHT * (BOTTOM + UP) + CAPTION + below
+        box = (
+            edge / width,
+            (HEIGHT * BOTTOM + below) / height,
+            (width - edge) / width - 0.03,
+            HEIGHT * UP / height,
+        )
+        return (width, height), box
+
+    def _legend_rows(self) -> tuple[int, int]:
+        """Columns of the legend below a drawing, and lines of one of them."""
+        texts = [self.spelling.text(text).splitlines() for _kind, text in self.scene.legend]
+        columns = columns_above([line for lines in texts for line in lines], figure_width()) if texts else 1
+        return columns, -(-len(texts) // columns) * max(map(len, texts), default=0)
 
     def _paper(self) -> Sheet | Globe:
         """The motion read for drawing, in a window that also holds the marks and curves not too far out."""
@@ -150,7 +180,7 @@ class _Drawing:
         ]
         places += [self._place_mark(mark).place[None] for mark in self.scene.marks]
         places += drive_arcs(self.paper, initial_sample(self.paper, motion))
-        room = (self.box[2] * PAGE_WIDTH - 0.3, self.box[3] * HEIGHT - 0.3)
+        room = (self.box[2] * self.size[0] - 0.3, self.box[3] * self.size[1] - 0.3)
         return widen(self.paper, np.concatenate([*places, np.empty((0, 2))]), room)
 
     def _chosen_sample(self) -> int:
@@ -264,22 +294,27 @@ class _Drawing:
 
     # what stands beside it
 
-    def _write_legend(self, axes: Axes) -> None:
+    def _write_legend(self, figure: Figure, axes: Axes) -> None:
         """What the kinds of curves, lines and marks are."""
         entries = [_handle(kind) for kind, _text in self.scene.legend]
-        axes.legend(
-            entries,
-            [self.spelling.text(text) for _kind, text in self.scene.legend],
-            loc="upper left",
-            bbox_to_anchor=(1.01, 1.0),
-            borderaxespad=0.0,
-            handlelength=2.0,
-        )
+        texts = [self.spelling.text(text) for _kind, text in self.scene.legend]
+        look: dict[str, Any] = {"borderaxespad": 0.0, "handlelength": 2.0}
+        if self.is_narrow:
+            look |= {"loc": "lower left", "ncols": self._legend_rows()[0], "columnspacing": 1.2}
+            figure.legend(entries, texts, bbox_to_anchor=(self.box[0], 0.0), **look)
+        else:
+            axes.legend(entries, texts, loc="upper left", bbox_to_anchor=(1.01, 1.0), **look)
 
     def _draw_column(self, figure: Figure, diagram: CircleDiagram, shown: Sequence[Mark]) -> None:
         """The circle diagram, the bodies by number, and the notes."""
-        draw_circle_diagram(figure.add_axes((0.66, 0.455, 0.33, 0.425)), diagram)
-        key = figure.add_axes((0.645, 0.01, 0.35, 0.43))
+        wide, high = self.size
+        circle, text = (0.66, 0.455, 0.33, 0.425), (0.645, 0.01, 0.35, 0.43)
+        if self.is_narrow:  # beside each other below the drawing, the text as wide as on a page
+            side, height = 0.26 * PAGE_WIDTH, 0.43 * HEIGHT / high
+            circle = (0.0, 0.05 / high, side / wide, height)
+            text = ((side + 0.05) / wide, 0.05 / high, (wide - side - 0.05) / wide, height)
+        draw_circle_diagram(figure.add_axes(circle), diagram)
+        key = figure.add_axes(text)
         key.set_axis_off()
         links = pens(self.mechanism.link_names)
         handles = [

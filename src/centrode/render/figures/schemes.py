@@ -17,6 +17,7 @@ from centrode.locale import _
 from centrode.model.labels import body_name, sliders_of
 from centrode.model.mechanism import FRAME
 from centrode.model.settings import shown_as
+from centrode.render.drawing.figure_room import figure_width
 from centrode.render.drawing.globe import arcs_on_paper, draw_globe
 from centrode.render.drawing.linkage import draw_mechanism, used_points
 from centrode.render.drawing.style import GROUND, INK, MUTED, pens
@@ -68,7 +69,7 @@ def scheme_figure(picture: SchemePicture, display: Display) -> Figure:
     scene = read_scene(picture.mechanism, picture.motion)
     key = _key(scene)
     room = max(KEY, legend_width([text for _line, text in key], HEIGHT))
-    scene, size = _on_paper(scene, picture.sample, (WIDTH - room, HEIGHT))
+    scene, size = _on_paper(scene, picture.sample, (min(WIDTH, figure_width()) - room, HEIGHT))
     figure = Figure(figsize=(size[0] + room, size[1]))
     axes = figure.add_axes((0.0, 0.0, size[0] / (size[0] + room), 1.0))
     _draw_scheme(axes, scene, picture, display)
@@ -80,10 +81,11 @@ def pair_figure(pair: SchemePair, display: Display) -> Figure:
     """Two schemes side by side to one scale, at one height, marked a) and b), above the key of the links."""
     pictures = pair.schemes
     scenes = [read_scene(one.mechanism, one.motion) for one in pictures]
+    each = min(PAIR_WIDTH, (figure_width() - PAIR_GAP) / 2), PAIR_HEIGHT
     per_inch, levels = 0.0, None
     for _pass in range(2):  # first the scale and the heights of each, then the greater ones for both
         drawn = [
-            _on_paper(scene, one.sample, (PAIR_WIDTH, PAIR_HEIGHT), per_inch, levels)
+            _on_paper(scene, one.sample, each, per_inch, levels)
             for scene, one in zip(scenes, pictures, strict=True)
         ]
         per_inch = max(float(scene.high[0] - scene.low[0]) / size[0] for scene, size in drawn)

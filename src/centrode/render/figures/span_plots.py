@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
+from centrode.render.drawing.figure_room import PAGE_HEIGHT, count_across, figure_width
 from centrode.render.drawing.style import (
     CENTRE_LINE,
     GROUND,
@@ -17,8 +18,6 @@ from centrode.render.drawing.style import (
     JUMP,
     LETTER,
     MUTED,
-    PAGE_HEIGHT,
-    PAGE_WIDTH,
     PALETTE,
     SMALL,
     THIN,
@@ -51,7 +50,7 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
     keyed, headed = len(names) > 1, bool(words.text(plot.panels[0].heading))
     each = HEADED if headed else PANEL
     height = 1.1 + each * len(plot.panels) + (legend_height(names) if keyed else 0.0)
-    figure = Figure(figsize=(PAGE_WIDTH, min(height, PAGE_HEIGHT)), layout=GridLayout())
+    figure = Figure(figsize=(figure_width(), min(height, PAGE_HEIGHT)), layout=GridLayout())
     grid = figure.subplots(len(plot.panels), 1, sharex=True, squeeze=False)[:, 0]
     factor, label, unit = spelling.label(plot.label)
     pieces = np.split(np.arange(len(plot.values)), 1 + np.flatnonzero(np.diff(plot.values) == 0.0))
@@ -65,7 +64,7 @@ def span_figure(plot: SpanPlot, display: Display) -> Figure:
     _name_spans(grid[0], plot, factor, words)
     low, high = factor * plot.ends[0], factor * plot.ends[-1]
     grid[-1].set_xlabel(label)
-    angle_ticks(grid[-1].xaxis, low, high, unit, TICKS)
+    angle_ticks(grid[-1].xaxis, low, high, unit, count_across(TICKS))
     grid[-1].set_xlim(low, high)
     if keyed:
         pens = [numbered_pen(curve.place) for curve in plot.panels[0].curves]
@@ -121,7 +120,7 @@ def _draw_jump(
 def _name_spans(axes: Axes, plot: SpanPlot, factor: float, words: PrintSpelling) -> None:
     """The name of each span above it, its number where there is no room."""
     ends = factor * np.array(plot.ends)
-    room = (PAGE_WIDTH - EDGES) / (ends[-1] - ends[0])
+    room = (figure_width() - EDGES) / (ends[-1] - ends[0])
     for number, (text, low, high) in enumerate(
         zip(map(words.text, plot.names), ends, ends[1:], strict=False)
     ):

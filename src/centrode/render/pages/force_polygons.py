@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,8 @@ from centrode.render.pages.force_column import FOOT, GUTTER, LEFT, TOP, write_co
 from centrode.render.pages.force_groups import draw_group
 from centrode.render.pages.force_signs import force_name
 from centrode.render.pages.levers import lever_column
-from centrode.render.pages.page import Array, Page, PageView, arrow, flat, new_page
+from centrode.render.pages.page import INCH, Array, Page, PageView, arrow, flat, new_page
+from centrode.render.pages.screens import scale_on_screen, screen_millimetres, write_scale_bars
 from centrode.render.spelling import DrawingSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.sheets.force_pages import GroupPage
@@ -32,6 +34,8 @@ SHORT = 0.5
 """Vectors shorter than this [mm] are told, not drawn."""
 AROUND = 38.0
 """Room around a group for the arrows of its forces [mm]."""
+TALLEST = 130.0
+"""The most height of a group or of its polygon, one above the other [mm]."""
 DRAWN, ROOM = 0.30, 0.38
 """Shares of the sheet's width for the group and for its polygon."""
 LOOKS: Mapping[str, tuple[Any, float]] = {
@@ -44,7 +48,12 @@ LOOKS: Mapping[str, tuple[Any, float]] = {
 
 
 def group_page(sheet: GroupPage) -> Figure:
-    """A group with its forces, its polygon, and what was done; a millimetre is what the page says."""
+    """A group with its forces, its polygon, and what was done; a millimetre is what the page says.
+
+    On a screen that is narrower than both, the polygon stands below the group, and nothing beside them.
+    """
+    if is_stacked(sheet):
+        return stacked_drawings(sheet)
     mechanism = sheet.mechanism
     spelling = DrawingSpelling(mechanism.display)
     page = new_page(sheet.paper)
@@ -72,7 +81,52 @@ def group_page(sheet: GroupPage) -> Figure:
     write_column(page, column, spelling.text(sheet.heading), heads, lines)
     write_title(page, column, spelling.text(sheet.title), mechanism)
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
+    write_scale_bars(page, LEFT, [(length, unit), (scale, "N")])
     return page.figure
+
+
+def is_stacked(sheet: GroupPage) -> bool:
+    """Whether a group and its polygon stand one above the other."""
+    return column_of(sheet) > screen_millimetres()
+
+
+def stacked_drawings(sheet: GroupPage) -> Figure:
+    """A group above its polygon, each in the whole width of a screen, at the scales that go into it."""
+    wide, mechanism = screen_millimetres(), sheet.mechanism
+    factor, unit = shown_as("m", mechanism.display)
+    room = np.array([wide - 2.0 * LEFT, TALLEST])
+    extents, places = _extents(sheet), flat([factor * place for place in sheet.corners])
+    length = round_scale(float(np.max(extents / (room - AROUND))))
+    several = sheet.together and len(sheet.bodies) > 1
+    polygons = (
+        sheet.polygons if several else tuple(_fitting(one, room - 2.0 * GUTTER) for one in sheet.polygons)
+    )
+    sheet = replace(sheet, polygons=polygons)
+    up = float(np.ptp(places, axis=0)[1]) / length + AROUND
+    low = TALLEST if several else max(_height(one) for one in polygons) + 3.0 * GUTTER
+    page = new_page((wide, FOOT + low + up + TOP))
+    view = PageView.about(np.array([LEFT, FOOT + low]), np.array([room[0], up]), places, length)
+    draw_group(page, view, sheet, scene_of(mechanism, sheet.instant))
+    scale = draw_polygons(page, sheet, np.array([LEFT, FOOT]), np.array([room[0], low]))
+    page.place_names(np.array([[1.0, 1.0], [wide - 1.0, FOOT + low + up]]))
+    write_scale_bars(page, LEFT, [(length, unit), (scale, "N")])
+    return page.figure
+
+
+def _fitting(polygon: DrawnPolygon, room: Array) -> DrawnPolygon:
+    """A polygon at a scale at which it goes into its room."""
+    extents = np.ptp(_corners(polygon), axis=0)
+    scale = scale_on_screen(polygon.scale, lambda one: bool((extents / one <= room).all()), FORCE_SCALES)
+    return replace(polygon, scale=scale)
+
+
+def _height(polygon: DrawnPolygon) -> float:
+    return float(np.ptp(_corners(polygon)[:, 1])) / polygon.scale
+
+
+def _corners(polygon: DrawnPolygon) -> Array:
+    """Where the arrows of a polygon begin and end [N]."""
+    return flat([0j, *(end for stroke in polygon.strokes for end in (stroke.start, stroke.end))])
 
 
 def column_of(sheet: GroupPage) -> float:
@@ -83,16 +137,23 @@ def column_of(sheet: GroupPage) -> float:
 def group_scale(sheet: GroupPage) -> float:
     """What a millimetre of the drawn group stands for, in the display's unit of lengths."""
     wide, high = sheet.paper
-    factor, _unit = shown_as("m", sheet.mechanism.display)
     room = np.array([DRAWN * wide, high - TOP - FOOT - GUTTER]) - AROUND
+    return round_scale(float(np.max(_extents(sheet) / room)))
+
+
+def _extents(sheet: GroupPage) -> Array:
+    """Sides of a group, in the display's unit of lengths; those of the mechanism where its sliders are in one place."""
+    factor, _unit = shown_as("m", sheet.mechanism.display)
     extents = np.ptp(flat([factor * place for place in sheet.corners]), axis=0)
-    if not extents.any():  # sliders in one place
+    if not extents.any():
         extents = np.ptp(flat([factor * place for place in sheet.all_corners]), axis=0)
-    return round_scale(float(np.max(extents / room)))
+    return np.asarray(extents)
 
 
-def drawing_end(sheet: GroupPage | LeverPage) -> tuple[float, float]:
+def drawing_end(sheet: GroupPage | LeverPage, figure: Figure) -> tuple[float, float]:
     """Where the drawing of a page ends at its column of text, and at its head [mm]."""
+    if isinstance(sheet, GroupPage) and is_stacked(sheet):
+        return screen_millimetres(), float(figure.get_figheight()) * INCH - TOP
     column = column_of(sheet) if isinstance(sheet, GroupPage) else lever_column(sheet)
     return column, sheet.paper[1] - TOP
 

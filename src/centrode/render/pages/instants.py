@@ -22,8 +22,10 @@ from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.page import (
+    BESIDE,
     COLUMN,
     CORNER,
+    NAMES,
     SIZE,
     TOP,
     Array,
@@ -35,6 +37,12 @@ from centrode.render.pages.page import (
     symbol,
     write_head,
 )
+from centrode.render.pages.screens import (
+    scale_on_screen,
+    screen_millimetres,
+    size_on_screen,
+    write_scale_bars,
+)
 from centrode.render.spelling import PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
@@ -43,14 +51,17 @@ if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.pages import InstantPage
 
-DRAWING = COLUMN, TOP
-"""Where the drawing of a page of an instant ends: at the column and below the head [mm]."""
 SIGN = 1.1
 """Radius of a hinge's circle [mm]."""
 LONGEST = 18.0
 """Most that a vector of velocity is long [mm]."""
 ARC = 3.2
 """Radius of an arc that shows a sense of rotation [mm]."""
+
+
+def drawing_end() -> tuple[float, float]:
+    """Where the drawing of a page of an instant ends: at the column, or with the screen; below the head [mm]."""
+    return min(COLUMN, screen_millimetres()), TOP
 
 
 def instant_figure(sheet: InstantPage, display: Display) -> Figure:
@@ -74,12 +85,13 @@ def instant_figure(sheet: InstantPage, display: Display) -> Figure:
     speed_factor, speed_unit = shown_as("m/s", display)
     head = [
         caption(sheet.mechanism, sheet.instant, 0),
-        f"μ_l = {factor * sheet.scale:g} {spelled_unit(unit)} " + _("per mm"),
+        f"μ_l = {view.scale:g} {spelled_unit(unit)} " + _("per mm"),
         f"μ_v = {speed_factor * per_mm:g} {spelled_unit(speed_unit)} " + _("per mm"),
     ]
     listed = [spelling.text(one) for one in sheet.lines]
     write_head(page, spelling.text(sheet.title), sheet.mechanism, head, listed)
-    page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
+    page.place_names(np.array([[1.0, 1.0], [drawing_end()[0] - 1.0, TOP - 3.0]]))
+    write_scale_bars(page, CORNER[0], [(view.scale, unit), (speed_factor * per_mm, speed_unit)])
     return page.figure
 
 
@@ -88,21 +100,28 @@ def placed_scene(sheet: InstantPage, factor: float, per_mm: float) -> tuple[Link
 
     Slots are as long as their pins travel in the whole motion; the view is that of the instant.
     """
-    scale = factor * sheet.scale
     now = scene_of(sheet.mechanism, sheet.instant)
     together = [data.drop_dims("event", errors="ignore") for data in (sheet.instant, sheet.course)]
     whole = scene_of(sheet.mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
-    tips = [factor * (one.place + sheet.scale / per_mm * one.rate) for one in sheet.velocities]
-    chosen = np.vstack([now.low, now.high, flat(tips)]) if tips else np.array([now.low, now.high])
+    size = size_on_screen(SIZE, BESIDE)
+
+    def whole_of(scale: float) -> Array:
+        tips = [factor * one.place + scale / per_mm * one.rate for one in sheet.velocities]
+        return np.vstack([now.low, now.high, flat(tips)]) if tips else np.array([now.low, now.high])
+
+    scale = scale_on_screen(
+        factor * sheet.scale, lambda one: bool((np.ptp(whole_of(one), axis=0) / one <= size - NAMES).all())
+    )
+    chosen = whole_of(scale)
     centres = [flat([factor * centre.place])[0] for centre in sheet.centres]
     for centre in sorted(centres, key=lambda at: float(np.abs(at - (now.low + now.high) / 2).max())):
         more = np.vstack([chosen, centre])
-        if ((more.max(axis=0) - more.min(axis=0)) / scale > SIZE - 12.0).any():
+        if ((more.max(axis=0) - more.min(axis=0)) / scale > size - 12.0).any():
             break
         chosen = more
     inches = SIGN_INCHES * now.extent / (SIGN * scale)
     scene = replace(whole, low=now.low, high=now.high, inches=inches)
-    return scene, PageView.about(CORNER, SIZE, chosen, scale)
+    return scene, PageView.about(CORNER, size, chosen, scale)
 
 
 def draw_velocities(

@@ -17,6 +17,7 @@ from centrode.render.figures.linkages import caption
 from centrode.render.pages.force_column import FOOT, GUTTER, LEFT, TOP, write_column, write_title
 from centrode.render.pages.force_signs import force_arrows, moment_arc
 from centrode.render.pages.page import Array, Page, PageView, flat, new_page, typeset
+from centrode.render.pages.screens import size_on_screen, write_scale_bars
 from centrode.render.spelling import DrawingSpelling
 from centrode.scenes.places import corners
 
@@ -36,11 +37,11 @@ def lever_page(sheet: LeverPage) -> Figure:
     mechanism = sheet.mechanism
     spelling = DrawingSpelling(mechanism.display)
     page = new_page(sheet.paper)
-    wide, high = page.size
+    _wide, high = page.size
     factor, unit = shown_as("m", mechanism.display)
     if sheet.unit == "N":
         factor, unit = 1.0, "1"
-    corner, size = np.array([LEFT, FOOT]), np.array([WIDE * wide, high - TOP - FOOT - GUTTER])
+    corner, size = np.array([LEFT, FOOT]), drawing_size(sheet)
     scale = lever_scale(sheet)
     view = PageView.about(corner, size, factor * flat(sheet.corners), scale)
     draw_outlines(page, view, sheet, factor)
@@ -53,20 +54,26 @@ def lever_page(sheet: LeverPage) -> Figure:
     write_title(page, column, spelling.text(sheet.title), mechanism)
     write_column(page, column, spelling.text(sheet.heading), heads, list(map(spelling.text, sheet.lines)))
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
+    write_scale_bars(page, LEFT, [(scale, unit + per)] if unit != "1" else [])
     return page.figure
 
 
 def lever_column(sheet: LeverPage) -> float:
     """Where the column of text begins on the page of a lever [mm]."""
-    return LEFT + WIDE * sheet.paper[0] + GUTTER
+    return LEFT + float(drawing_size(sheet)[0]) + GUTTER
+
+
+def drawing_size(sheet: LeverPage) -> Array:
+    """Sides of the room of a lever [mm]."""
+    wide, high = sheet.paper
+    return size_on_screen(np.array([WIDE * wide, high - TOP - FOOT - GUTTER]), LEFT + GUTTER)
 
 
 def lever_scale(sheet: LeverPage) -> float:
     """What a millimetre of the lever stands for, in the display's unit of lengths by radian."""
-    wide, high = sheet.paper
     factor = 1.0 if sheet.unit == "N" else shown_as("m", sheet.mechanism.display)[0]
     # names and arrows need room around the lever
-    room = np.array([WIDE * wide, high - TOP - FOOT - GUTTER]) - 46.0
+    room = drawing_size(sheet) - 46.0
     return round_scale(float(np.max(factor * np.ptp(flat(sheet.corners), axis=0) / room)))
 
 

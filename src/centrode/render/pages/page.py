@@ -272,6 +272,10 @@ class PageView:
 
 CORNER, SIZE = np.array([6.0, 6.0]), np.array([128.0, 128.0])
 COLUMN, TOP = 138.0, 140.0
+BESIDE = COLUMN - SIZE[0]
+"""What is on the left and on the right of the drawing, the column left out [mm]."""
+NAMES = 8.0
+"""Room of names about what is drawn on a screen [mm]."""
 LINE = 3.8
 """From line to line of the column at the right [mm]."""
 COLUMNS = 49

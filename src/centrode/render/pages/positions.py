@@ -20,6 +20,7 @@ from centrode.render.drawing.texts import plain
 from centrode.render.figures.files import AS_WRITTEN
 from centrode.render.figures.linkages import instant_text
 from centrode.render.pages.page import Page, PageView, new_page, typeset
+from centrode.render.pages.screens import screen_millimetres, size_on_screen, write_scale_bars
 from centrode.render.spelling import FigureSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
@@ -30,10 +31,13 @@ if TYPE_CHECKING:
 
 CORNER, SIZE = np.array([6.0, 6.0]), np.array([150.0, 128.0])
 COLUMN, TOP, LINE = 160.0, 140.0, 3.4
-DRAWING = COLUMN, TOP - 6.0
-"""Where the drawing ends: at the column, and below the title and what stands under it [mm]."""
 SIGN = 0.9
 """Radius of a hinge's circle [mm]."""
+
+
+def drawing_end() -> tuple[float, float]:
+    """Where the drawing ends: at the column, or with the screen; below the title and what stands under it [mm]."""
+    return min(COLUMN, screen_millimetres()), TOP - 6.0
 
 
 def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
@@ -47,8 +51,9 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
     joined = xarray.concat(together, dim="sample", data_vars="minimal")
     scene = scene_of(mechanism, joined)
     _factor, unit = shown_as("m", display)
-    scale = round_scale(float(np.max((scene.high - scene.low) / SIZE)), 0.86)
-    view = PageView.about(CORNER, SIZE, np.array([scene.low, scene.high]), scale)
+    size = size_on_screen(SIZE, COLUMN - SIZE[0])
+    scale = round_scale(float(np.max((scene.high - scene.low) / size)), 0.86)
+    view = PageView.about(CORNER, size, np.array([scene.low, scene.high]), scale)
     scene = replace(scene, inches=SIGN_INCHES * scene.extent / (SIGN * scale))
     count = sheet.positions.sizes["sample"]
     draw_positions(page, view, scene, count)
@@ -61,7 +66,8 @@ def positions_figure(sheet: PositionsPage, display: Display) -> Figure:
     page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=SMALL, va="bottom", label=AS_WRITTEN)
     scale_text = f"μ_l = {scale:g} {spelled_unit(unit)} " + _("per mm")
     write_column(page, sheet, spelling.text(sheet.note), scale_text)
-    page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
+    page.place_names(np.array([[1.0, 1.0], [drawing_end()[0] - 1.0, TOP - 7.0]]))
+    write_scale_bars(page, CORNER[0], [(scale, unit)])
     return page.figure
 
 

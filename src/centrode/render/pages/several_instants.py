@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from centrode.locale import _
 from centrode.model.settings import shown_as
 from centrode.numerics.round_scales import round_scale
 from centrode.quantities import spelled_unit
+from centrode.render.drawing.figure_room import screen_width
 from centrode.render.drawing.linkage import draw_bodies, draw_drive, draw_hinges, draw_links
 from centrode.render.drawing.style import INK, LEAST_POINTS, NAME, SMALL, TITLE, pens
 from centrode.render.drawing.tags import lines
@@ -22,6 +24,7 @@ from centrode.render.figures.files import AS_WRITTEN
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.instants import SIGN, draw_centres, draw_senses, draw_velocities
 from centrode.render.pages.page import Array, Page, PageView, arrow, flat, new_page, symbol, typeset
+from centrode.render.pages.screens import screen_millimetres, size_on_screen
 from centrode.render.spelling import PrintSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
@@ -34,18 +37,23 @@ PAPER = 238.0, 170.0
 """Width and height of the page [mm]."""
 CORNER, SIZE = np.array([6.0, 22.0]), np.array([148.0, 130.0])
 COLUMN, TOP = 162.0, 160.0
-DRAWING = COLUMN, TOP - 6.0
-"""Where the drawing ends: at the column and below the head [mm]."""
 LONGEST = 20.0
 """Most that a vector is long [mm]."""
 FOOT = 16.0
 """Where the lines below the drawing begin [mm]."""
 LINE, COLUMNS = 3.8, 51
 """From line to line of the column [mm], and letters in a line of it."""
+LETTER = 1.45
+"""Width of a small letter [mm]."""
 FADED = 0.5
 """How opaque the positions before the last are."""
 OF_ACCELERATIONS: Any = (0, (4, 1.5))
 """Dashes of accelerations."""
+
+
+def drawing_end() -> tuple[float, float]:
+    """Where the drawing ends: at the column, or with the screen; below the head [mm]."""
+    return min(COLUMN, screen_millimetres()), TOP - 6.0
 
 
 def instants_figure(sheet: InstantsPage, display: Display) -> Figure:
@@ -91,7 +99,7 @@ def instants_figure(sheet: InstantsPage, display: Display) -> Figure:
         COLUMN, TOP - 8.0, [spelling.text(one) for one in sheet.lines], letters=COLUMNS, step=LINE,
         size=LEAST_POINTS, indent=4, spelled=typeset,
     )  # fmt: skip
-    page.place_names(np.array([[1.0, FOOT + 2.0], [COLUMN - 1.0, DRAWING[1]]]))
+    page.place_names(np.array([[1.0, FOOT + 2.0], [drawing_end()[0] - 1.0, drawing_end()[1]]]))
     return page.figure
 
 
@@ -114,20 +122,21 @@ def _placed_scenes(sheet: InstantsPage, factor: float) -> tuple[list[LinkageScen
         for one in sheet.instants
     ]
     chosen = np.vstack([corner for scene in now for corner in (scene.low, scene.high)])
-    scale = round_scale(float(np.max(np.ptp(chosen, axis=0) / (SIZE - 2.0 * LONGEST))))
+    size = size_on_screen(SIZE, COLUMN - SIZE[0])
+    scale = round_scale(float(np.max(np.ptp(chosen, axis=0) / (size - 2.0 * LONGEST))))
     middle = (chosen.min(axis=0) + chosen.max(axis=0)) / 2
     centres = [flat([factor * centre.place])[0] for one in sheet.instants for centre in one.centres]
     around = np.vstack([chosen - scale * LONGEST, chosen + scale * LONGEST])
     for centre in sorted(centres, key=lambda at: float(np.abs(at - middle).max())):
         more = np.vstack([around, centre])
-        if (np.ptp(more, axis=0) / scale > SIZE).any():
+        if (np.ptp(more, axis=0) / scale > size).any():
             break
         around = more
     extent = float(np.max(np.ptp(chosen, axis=0)))
     inches = SIGN_INCHES * extent / (SIGN * scale)
     low, high = chosen.min(axis=0), chosen.max(axis=0)
     scenes = [replace(scene, low=low, high=high, inches=inches) for scene in whole]
-    return scenes, PageView.about(CORNER, SIZE, around, scale)
+    return scenes, PageView.about(CORNER, size, around, scale)
 
 
 def _with_new_centres(instants: Sequence[InstantPage], number: int) -> InstantPage:
@@ -158,12 +167,12 @@ def _write_foot(page: Page, sheet: InstantsPage, scales: Sequence[str]) -> None:
         f"{plain(first)}{'′' * number}: {caption(sheet.mechanism, one.instant, 0)}"
         for number, one in enumerate(sheet.instants)
     ]
+    meaning = _("velocities in full lines, accelerations dashed")
+    if screen_width() is not None:  # as wide as the drawing
+        room = int((screen_millimetres() - 2.0 * CORNER[0]) / LETTER)
+        text = "\n".join(textwrap.fill(";   ".join(line), room) for line in (shown, scales, [meaning]))
+        page.write(CORNER[0], FOOT + LINE, text, size=LEAST_POINTS, va="top", linespacing=1.1)
+        return
     page.write(CORNER[0], FOOT, ";   ".join(shown), size=NAME, va="top")
     page.write(CORNER[0], FOOT - 1.2 * LINE, ";   ".join(scales), size=NAME, va="top")
-    page.write(
-        CORNER[0],
-        FOOT - 2.4 * LINE,
-        _("velocities in full lines, accelerations dashed"),
-        size=SMALL,
-        va="top",
-    )
+    page.write(CORNER[0], FOOT - 2.4 * LINE, meaning, size=SMALL, va="top")

@@ -13,9 +13,11 @@ from centrode.model.settings import shown_as
 from centrode.quantities import spelled_unit
 from centrode.render.drawing.style import GROUND, INK, Pen, pens
 from centrode.render.figures.linkages import caption
+from centrode.render.pages.instants import drawing_end
 from centrode.render.pages.page import (
-    COLUMN,
+    BESIDE,
     CORNER,
+    NAMES,
     SIZE,
     TOP,
     Array,
@@ -28,6 +30,7 @@ from centrode.render.pages.page import (
     typeset,
     write_head,
 )
+from centrode.render.pages.screens import scale_on_screen, size_on_screen, write_scale_bars
 from centrode.render.spelling import PrintSpelling
 
 if TYPE_CHECKING:
@@ -50,8 +53,11 @@ def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
     """A page A5 across: a diagram at its scale, which is true on paper, with the vector equations it was drawn by."""
     page = new_page()
     factor, unit = shown_as(sheet.unit, display)
-    scale = factor * sheet.scale
-    view = PageView.about(CORNER, SIZE, flat([factor * corner for corner in sheet.corners]), scale)
+    corners, size = flat([factor * corner for corner in sheet.corners]), size_on_screen(SIZE, BESIDE)
+    scale = scale_on_screen(
+        factor * sheet.scale, lambda one: bool((np.ptp(corners, axis=0) / one <= size - NAMES).all())
+    )
+    view = PageView.about(CORNER, size, corners, scale)
     colours = pens(sheet.mechanism.link_names)
     drawn = draw_strokes(page, view, sheet.strokes, factor, colours)
     draw_images(page, view, sheet, factor)
@@ -65,7 +71,8 @@ def vector_diagram_figure(sheet: VectorDiagramPage, display: Display) -> Figure:
     write_head(
         page, spelling.text(sheet.title), sheet.mechanism, head, [spelling.text(one) for one in sheet.lines]
     )
-    page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
+    page.place_names(np.array([[1.0, 1.0], [drawing_end()[0] - 1.0, TOP - 3.0]]))
+    write_scale_bars(page, CORNER[0], [(scale, unit)])
     return page.figure
 
 

@@ -17,8 +17,9 @@ from centrode.render.drawing.tags import lines
 from centrode.render.drawing.texts import plain
 from centrode.render.figures.linkages import caption
 from centrode.render.pages.force_signs import moment_arc
+from centrode.render.pages.instants import drawing_end
 from centrode.render.pages.page import (
-    COLUMN,
+    BESIDE,
     CORNER,
     SIZE,
     TOP,
@@ -29,6 +30,7 @@ from centrode.render.pages.page import (
     new_page,
     write_head,
 )
+from centrode.render.pages.screens import size_on_screen, write_scale_bars
 from centrode.render.spelling import DrawingSpelling
 from centrode.scenes.linkage import scene_of
 from centrode.scenes.places import SIGN_INCHES, LinkageScene
@@ -44,8 +46,6 @@ LONGEST = 26.0
 """Most that a vector is long [mm]."""
 SHORTEST = 0.8
 """Vectors shorter than this [mm] are left out."""
-BODY = float(SIZE[0]) - 2.0 * LONGEST
-"""Room of the mechanism between the arrows [mm]."""
 
 
 def vector_page(sheet: VectorPage) -> Figure:
@@ -77,7 +77,13 @@ def vector_page(sheet: VectorPage) -> Figure:
         f"{sheet.symbol} = {per_mm:g} {spelled_unit(sheet.unit)} " + _("per mm"),
     ]
     write_head(page, spelling.text(sheet.title), mechanism, head, [spelling.text(one) for one in sheet.lines])
-    page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
+    page.place_names(np.array([[1.0, 1.0], [drawing_end()[0] - 1.0, TOP - 3.0]]))
+    write_scale_bars(
+        page,
+        CORNER[0],
+        [(view.scale, shown_as("m", mechanism.display)[1]), (per_mm, sheet.unit)],
+        caption(mechanism, motion, sample),
+    )
     return page.figure
 
 
@@ -89,9 +95,10 @@ def _place(scene: LinkageScene, sample: int) -> tuple[LinkageScene, PageView]:
         spots += [] if ends is None else [np.array(ends)]
     around = np.vstack(spots)
     extent = float(np.max(np.ptp(around, axis=0))) or 1.0
-    scale = round_scale(extent, BODY)
+    size = size_on_screen(SIZE, BESIDE)
+    scale = round_scale(extent, float(size[0]) - 2.0 * LONGEST)  # between the arrows
     inches = SIGN_INCHES * scene.extent / (SIGN * scale)
-    return replace(scene, inches=inches), PageView.about(CORNER, SIZE, around, scale)
+    return replace(scene, inches=inches), PageView.about(CORNER, size, around, scale)
 
 
 def _draw(page: Page, start: Array, vector: VectorOnBody, per_mm: float, name: str, colour: str) -> None:
