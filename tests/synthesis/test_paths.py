@@ -118,8 +118,7 @@ def test_constraints_are_kept(monkeypatch) -> None:
         lengths = [math.dist(o, d), *links]
         assert max(lengths) <= 6 * min(lengths) * (1 + 1e-6)
         assert np.abs([o, d]).max() <= 60 + 1e-9
-        places = ct.motion(mechanism, 1441).position.to_numpy().reshape(-1, 2)
-        size = np.ptp(np.concatenate([places, [o, d]]), axis=0)
+        size = np.ptp(np.concatenate([places.to_numpy().reshape(-1, 2), [o, d]]), axis=0)
         assert (size <= np.array([125, 100]) * (1 + 5e-3)).all()
         check_ordered(answer, rows("yu1"))
 

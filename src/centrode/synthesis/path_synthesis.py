@@ -273,9 +273,10 @@ def box_of(linkages: Array, side: Array, places: int = BOX_PLACES) -> Array:
 
 def _greatest(values: Array) -> Array:
     """Greatest value (...) of periodic samples (..., n), with the parabola about the greatest of them."""
-    best = np.argmax(values, axis=-1)[..., None]
     n = values.shape[-1]
-    before, here, after = (np.take_along_axis(values, (best + k) % n, axis=-1)[..., 0] for k in (-1, 0, 1))
+    rows = values.reshape(-1, n)
+    row, best = np.arange(len(rows)), np.argmax(rows, axis=1)
+    before, here, after = (rows[row, (best + k) % n].reshape(values.shape[:-1]) for k in (-1, 0, 1))
     bend = 2 * here - before - after
     greatest: Array = here + (after - before) ** 2 / (8 * np.maximum(bend, 1e-300))
     return np.where(bend > 0, greatest, here)
