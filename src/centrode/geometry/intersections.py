@@ -20,7 +20,7 @@ from centrode.geometry.plane import (
     radicand_of_circle_and_line,
     radicand_of_circles,
 )
-from centrode.numerics.bends import Bent, Cells, least_bound, plus
+from centrode.numerics.bends import Bent, Cells, VectorBend, least_bound, plus
 from centrode.numerics.jets import Jet
 
 # Points that move: what a locus says of a point's next coefficient, the ones before being known.
@@ -55,6 +55,9 @@ class MovingLocus(Protocol):
     def pull(self, cells: Cells) -> Pull:
         """Bound over cells of the gradient multiplied by the point's acceleration, its velocity being known."""
 
+    def hold(self, pull: Pull, acceleration: Number, cells: Cells) -> tuple[Place, Number] | None:
+        """Direction in which a locus that stands still holds the point, and the bound of its acceleration there."""
+
     def reach(self, cells: Cells) -> Number:
         """Bound of the gradient's length over cells."""
 
@@ -88,13 +91,34 @@ class AtDistance:
 
     def pull(self, cells: Cells) -> Pull:
         """Of arm . (x'' - c'') = (r^2)''/2 - |x' - c'|^2."""
-        carried = times(self.reach(cells), bend(self.centre, cells))
+        moved = bend(self.centre, cells)
+        carried, share = times(self.reach(cells), moved), 0.0
+        vector = shared_bend(self.centre)
+        if vector is not None and vector.direction is not None:
+            # the arm turns within the cell, so the direction that the centre is held in lets through a little more
+            turned = plus(times(cells.half, length(self.arm[1], cells)), times(cells.sagitta, moved))
+            close = plus(project_acceleration(self.arm[0], vector, cells), times(turned, moved))
+            closer = cells.m.less(close, carried)
+            carried = cells.m.where(closer, close, carried)
+            share = cells.m.where(closer, times(cells.sagitta, moved), 0.0)
         # |x' - c'| anywhere in the cell: at the centre, grown by half (A + C), with the part of A left to the
         # coefficients
         velocity = plus(length(self.arm[1], cells), times(cells.half, bend(self.centre, cells)))
         known = plus(plus(carried, times(0.5, bend((self.squared,), cells))), times(velocity, velocity))
         # of (v + half A)^2: v^2, 2 half v A and half^2 A^2
-        return known, times(2.0 * cells.half, velocity), cells.half * cells.half
+        return known, plus(share, times(2.0 * cells.half, velocity)), cells.half * cells.half
+
+    def hold(self, pull: Pull, acceleration: Number, cells: Cells) -> tuple[Place, Number] | None:
+        """How a fixed centre holds the point along the arm, a bound of its acceleration being known."""
+        if any(isinstance(x, Jet) for x in (*self.centre, self.squared)):
+            return None
+        known, linear, squared = pull
+        pulled = plus(known, plus(times(linear, acceleration), times(squared, acceleration * acceleration)))
+        # arm . x'' is bounded with the arm as it lies anywhere in the cell, and wanted with the arm in the middle
+        turned = plus(times(cells.half, length(self.arm[1], cells)), times(cells.sagitta, acceleration))
+        size = length(self.arm[0], cells)
+        direction = tuple(x / size for x in self.arm[0])
+        return direction, plus(pulled, times(turned, acceleration)) / size
 
     def reach(self, cells: Cells) -> Number:
         # the arm is as long as the radius
@@ -138,6 +162,13 @@ class OnLine:
         known = plus(line, plus(times(2.0 * rate, velocity), times(turn, away)))
         return known, plus(times(2.0 * rate, cells.half), times(turn, cells.sagitta)), 0.0
 
+    def hold(self, pull: Pull, acceleration: Number, cells: Cells) -> tuple[Place, Number] | None:
+        """A line that stands still holds the point square to it altogether."""
+        if any(isinstance(x, Jet) for x in (*self.through, *self.direction)):
+            return None
+        x, y = self.gradient
+        return (x, y), 0.0
+
     def reach(self, cells: Cells) -> Number:
         return 1.0
 
@@ -174,17 +205,41 @@ def bound_acceleration(
     the velocity's change as well, on which the pulls depend: it is the least with B determinant = sum of all.
     """
     sums: list[Number] = [0.0, 0.0, 0.0]
-    for locus, way in zip(loci, ways, strict=True):
+    pulls = [locus.pull(cells) for locus in loci]
+    for pull, way in zip(pulls, ways, strict=True):
         # ways times pulls, coefficient by coefficient: what does not depend on B, what B multiplies, and B^2
-        sums = [plus(one, times(way, other)) for one, other in zip(sums, locus.pull(cells), strict=True)]
+        sums = [plus(one, times(way, other)) for one, other in zip(sums, pull, strict=True)]
     known, linear, squared = sums
     # B determinant = known + linear B + squared B^2
     least = least_bound(known, determinant - linear, squared, cells.m)
-    return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells) for axis in place)
+    # what a fixed link holds stays held: bounds of lengths alone would grow from group to group
+    held = next(
+        filter(None, (locus.hold(pull, least, cells) for locus, pull in zip(loci, pulls, strict=True))),
+        (None, None),
+    )
+    vector = VectorBend(least, *held)
+    return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells, vector) for axis in place)
+
+
+def shared_bend(place: Place) -> VectorBend | None:
+    """What is known of a place's acceleration as a whole, if its coordinates are numbers of one vector."""
+    first = place[0]
+    return first.vector if isinstance(first, Bent) else None
+
+
+def project_acceleration(arm: Place, vector: VectorBend, cells: Cells) -> Number:
+    """Bound of a plain vector's product with an acceleration that is bounded closer in one direction."""
+    assert vector.direction is not None
+    along = dot(arm, vector.direction)
+    across = apart(arm, tuple(times(along, x) for x in vector.direction))
+    return plus(times(cells.m.abs(along), vector.along), times(length(across, cells), vector.length))
 
 
 def bend(place: Place, cells: Cells) -> Number:
     """Bound of a place's acceleration over cells."""
+    vector = shared_bend(place)
+    if vector is not None:
+        return vector.length
     return length([x.bend for x in place if isinstance(x, Bent)], cells)
 
 

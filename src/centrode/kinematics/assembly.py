@@ -330,8 +330,10 @@ def assemble(kinematics: Kinematics) -> Assembled:
                     kinematics = _start_higher(kinematics, group, at, bounded if i < last else None)
                 # the bound is needed before: it tells how far below zero a radicand may be
                 elif group.is_signed:
-                    signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
-                    check_opens(kinematics, i, signs)
+                    radicand = _bounded_radicand(kinematics, group, bounded)
+                    bound = float(np.max(radicand.bound))  # one place, as an array or not
+                    signs[i] = _solve_signed(kinematics, group, at, bound)
+                    check_opens(kinematics, i, signs, radicand)
                 else:
                     solve_group(group, ARRAYS, kinematics.numbers, at, SideChoices(starting, i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
@@ -366,11 +368,11 @@ def _start_higher(
     return kinematics
 
 
-def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
-    """Rounding error of a group's radicand, from positions with bounds known before it."""
+def _bounded_radicand(kinematics: Kinematics, group: Group, bounded: Positions) -> Rounded:
+    """A group's radicand with its rounding error, from positions with bounds known before it."""
     bounding = Bounding(kinematics, group, 1.0)
     solve_group(group, ROUNDED, kinematics.numbers, bounded.copy(), SideChoices(bounding, 0))
-    return bounding.bound
+    return bounding.radicand
 
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:

@@ -165,17 +165,18 @@ def check_sides(kinematics: Kinematics) -> None:
             )
 
 
-def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> None:
-    """Refuse a group that is flat in the initial position and everywhere else: its sides would be rounding."""
+def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float], here: Rounded) -> None:
+    """Refuse a group that is flat in the initial position and everywhere else: its sides would be rounding.
+
+    `here` is its radicand in the initial position.
+    """
     groups = kinematics.structure.groups
     group, path = groups[index], kinematics.path
     if any(isinstance(before, Newton) for before in groups[:index]):
         return  # how those go on is not known yet
-    start = Rounded.of(np.float64(path.initial))
-    here = Rounded.of(kinematics.guard(ROUNDED, start, index, FixedSigns(ROUNDED, signs)))
     # one place is enough where it is open: only a group that is flat in the initial position can be flat
     # everywhere
-    if abs(here.value) > SAFETY * here.bound:
+    if bool(np.all(np.abs(here.value) > SAFETY * here.bound)):
         return
     away = Rounded.of(path.initial + path.unit * AWAY)
     there = Rounded.of(kinematics.guard(ROUNDED, away, index, FixedSigns(ROUNDED, signs)))
@@ -303,16 +304,16 @@ class Starting(EvaluationPolicy):
 
 
 class Bounding(Starting):
-    """A group with rounding bounds: keeps that of its radicand, refuses a divisor that may be zero."""
+    """A group with rounding bounds: keeps its radicand, refuses a divisor that may be zero."""
 
     def __init__(self, kinematics: Kinematics, group: Group, sign: float) -> None:
         super().__init__(kinematics)
         self.solved = group
         self.sign = sign
-        self.bound = 0.0
+        self.radicand = Rounded(0.0, 0.0)
 
     def root(self, group: int, radicand: Number) -> Number:
-        self.bound = float(np.max(Rounded.of(radicand).bound))  # one place, as an array or not
+        self.radicand = Rounded.of(radicand)
         return ROUNDED.sqrt(radicand) * self.sign
 
     def divisor(self, group: int, divisor: Number) -> Number:

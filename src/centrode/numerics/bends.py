@@ -48,7 +48,7 @@ def times(a: Number, b: Number) -> Number:
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells by half their width, over a namespace with `abs` and `sqrt`."""
+    """Cells by half their width, over a namespace with `abs`, `sqrt`, `less` and `where`."""
 
     half: Number
     m: Namespace
@@ -63,15 +63,30 @@ class Cells:
         return 0.0 if is_zero(x) else self.m.abs(x)
 
 
+@dataclass(frozen=True)
+class VectorBend:
+    """Bound of the length of a vector's second derivative over a cell, and a closer one along a unit vector."""
+
+    length: Number
+    direction: tuple[Number, ...] | None = None
+    along: Number = None
+
+
 class Bent(Jet):
-    """A jet of first order at the centre of a cell with a bound of its second derivative over the cell."""
+    """A jet of first order at the centre of a cell with a bound of its second derivative over the cell.
 
-    __slots__ = ("bend", "cells")
+    Components of one vector may share what is known of it as a whole.
+    """
 
-    def __init__(self, value: Number, slope: Number, bend: Number, cells: Cells) -> None:
+    __slots__ = ("bend", "cells", "vector")
+
+    def __init__(
+        self, value: Number, slope: Number, bend: Number, cells: Cells, vector: VectorBend | None = None
+    ) -> None:
         super().__init__((value, slope))
         self.bend = bend
         self.cells = cells
+        self.vector = vector
 
     def __repr__(self) -> str:
         return f"Bent({self.coefficients!r}, {self.bend!r})"

@@ -58,7 +58,11 @@ class Rounded:
     __array_ufunc__ = None
 
     def __init__(
-        self, value: Number, box: Number, rates: Mapping[ErrorSource, Number] = NO_SOURCES, rest: Number = None
+        self,
+        value: Number,
+        box: Number,
+        rates: Mapping[ErrorSource, Number] = NO_SOURCES,
+        rest: Number = None,
     ) -> None:
         self.value = value
         self.box = box
