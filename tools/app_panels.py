@@ -40,7 +40,7 @@ LANGUAGES = ("en", "ru", "uk")
 SCHEMES = ("light", "dark")
 WIDTHS = (400, 1000, 1600)
 HEIGHT = 900
-RESIZED = 300
+RESIZED = 700
 """Milliseconds after which a panel of another width asks for its figures."""
 TALLEST = 2400
 """Pixels of a panel that a sheet shows."""

@@ -63,6 +63,13 @@ def test_sliders_move_the_pair_in_its_contour(running: Any, server: Served) -> N
     assert page.locator("#mesh .tooth").count() > 20
     described = GEAR_PAIRS.parse(page.locator("#text").inner_text())
     assert described.shifts == (0.6, 0.36)
+    # On a phone what a slider moves follows it, and the numbers come after.
+    wide = page.viewport_size
+    page.set_viewport_size({"width": 390, "height": 844})
+    tops = [page.locator(f"#{one}").bounding_box()["y"] for one in ("second", "contour", "mesh", "facts")]
+    assert tops == sorted(tops)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.set_viewport_size(wide)
     # Out of the contour the page says what is wrong, as the command does.
     set_slider(page, "first", 1.5)
     page.wait_for_selector("#problems:not(.works):has-text('contact ratio')")

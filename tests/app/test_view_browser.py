@@ -202,3 +202,30 @@ def test_a_fast_oscillation_is_drawn_round_and_its_powers_stay_whole(running: An
         assert found["wrapped"] > 20
         assert found["units"] > 20
         assert found["broken"] == []
+
+
+ON_PHONE = """() => {
+  const pictures = [...document.querySelectorAll("#panel figure > .paper")];
+  const holder = document.querySelector("#panel .table");
+  const first = holder.querySelector("tbody td"), left = holder.getBoundingClientRect().left;
+  holder.scrollLeft = 10000;
+  return { scrolled: pictures.filter((one) => one.scrollWidth > one.clientWidth + 1).length, count: pictures.length,
+    points: Math.max(...pictures.map((one) => parseFloat(one.querySelector("svg").getAttribute("width")))),
+    passed: holder.scrollLeft > 0, stays: Math.abs(first.getBoundingClientRect().left - left) < 1 };
+}"""
+
+
+def test_pictures_are_drawn_for_the_width_of_the_panel(running: Any, server: Served) -> None:
+    """On a phone nothing drawn is scrolled, and the first column of a table stays; more room has wider drawings."""
+    with bench(running, server.address, wide=390) as one:
+        begun(one, "six-bar-press")
+        one.page.select_option(".tab-list", "polygons")
+        one.wait("document.querySelector('#panel[data-topic=polygons][data-ready=true] figure')")
+        phone = one.page.evaluate(ON_PHONE)
+        assert phone["count"] >= 4 and phone["scrolled"] == 0
+        assert phone["passed"] and phone["stays"]
+        one.page.set_viewport_size({"width": 1100, "height": 900})
+        one.until(lambda: one.page.evaluate(ON_PHONE)["points"] > phone["points"])
+        one.settle()
+        assert one.page.evaluate(ON_PHONE)["scrolled"] == 0
+        assert one.messages == []

@@ -117,6 +117,52 @@ def test_nothing_is_wider_than_the_page(
             assert seen.page.evaluate("document.documentElement.scrollWidth") <= wide
 
 
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A table that a phone has no room for, with long heads and long texts, and one that it has room for."""
+    heads = ("reaction", "greatest transmission angle, °", *(f"$x_{k}$, m" for k in range(8)), "remark")
+    row = ("5 slider", "128.25", *("−123.456",) * 8, "directions of two velocities that are known")
+    numbers = (False, *(True,) * 9, False)
+    wide = blocks.TableBlock(heads, (row,) * 4, "Wide", numbers)
+    small = blocks.TableBlock(("point", "$x$, m"), (("A", "1.5"),) * 3, "Small", (False, True))
+    section = blocks.SectionBlocks("", (wide, small))
+    file = tmp_path_factory.mktemp("pages") / "tables.html"
+    file.write_bytes(
+        html_page(blocks.Report("Tables", "", "en", (blocks.ChapterBlocks("t", "T", (section,)),)))
+    )
+    return file
+
+
+@pytest.mark.parametrize("wide", [390, 1280])
+def test_tables_can_be_read_at_every_width(running: Any, tables: Path, wide: int) -> None:
+    """No text is broken at every blank, letters are no small print, and what a row is about stays in view."""
+    with opened(running, tables, wide) as seen:
+        until(seen.page, lambda: bool(seen.page.evaluate("document.querySelector('table').style.cssText")))
+        assert seen.page.evaluate("document.documentElement.scrollWidth") <= wide
+        found = seen.page.evaluate(
+            """[...document.querySelectorAll('.table')].map((holder) => {
+              holder.scrollLeft = 10000;
+              const first = holder.querySelector('tbody td'), box = first.getBoundingClientRect();
+              const shown = document.elementFromPoint(box.left + 2, box.top + box.height / 2) === first;
+              const worded = [...holder.querySelectorAll('th, td')].filter((cell) => !cell.querySelector('math'));
+              const lines = new Map(worded.map((cell) => {
+                const range = document.createRange();
+                range.selectNodeContents(cell);
+                return [cell, new Set([...range.getClientRects()].map((one) => Math.round(one.top))).size];
+              }));
+              return { size: parseFloat(getComputedStyle(first).fontSize), scrolled: holder.scrollLeft > 0,
+                stays: Math.abs(box.left - holder.getBoundingClientRect().left) < 1 && shown,
+                most: Math.max(...lines.values()),
+                first: lines.get(first) };
+            })"""
+        )
+        assert [one["scrolled"] for one in found] == [wide == 390, False]
+        for one in found:
+            assert one["size"] >= 12
+            assert one["stays"] and one["first"] == 1
+            assert one["most"] <= 4
+
+
 @pytest.mark.parametrize("wide", [*WIDTHS, A4])
 def test_formulas_are_whole(running: Any, formulas: Path, wide: int) -> None:
     """Each has a size and ends inside of its column; on the narrowest screen a system may be scrolled."""

@@ -62,16 +62,35 @@ function Facts({ facts }: { facts: { label: string; text: string }[] }) {
 }
 
 const LONG = 40; // rows: longer tables are scrolled in a place of their own
+const LONG_TEXT = 11, LONGEST_TEXT = 60; // letters from which on a column is not narrower than some words
 
-function TableView({ block }: { block: Extract<Block, { kind: "table" }> }) {
+type Table = Extract<Block, { kind: "table" }>;
+const longestOf = (block: Table, k: number): number => {
+  const column = block.columns[k]!, cells = column.numeric ? [] : block.rows.slice(0, 400).map((row) => String(row[k] ?? "").length);
+  return Math.max(column.head.length, ...cells);
+};
+// A browser that has no room would break texts at every blank.
+function headClass(block: Table, k: number): string {
+  const column = block.columns[k]!, longest = longestOf(block, k);
+  return [column.numeric ? "n" : "", longest > LONGEST_TEXT ? "longest" : longest > LONG_TEXT ? "long" : ""].filter(Boolean).join(" ");
+}
+
+function TableView({ block }: { block: Table }) {
   const greatest = block.columns.map((_column, k) => Math.max(0, ...block.rows.slice(0, 2000).map((row) => (typeof row[k] === "number" && Number.isFinite(row[k]) ? Math.abs(row[k] as number) : 0))));
+  const holder = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => { // the column that stays is parted from those that pass below it
+    const element = holder.current!;
+    const watch = new ResizeObserver(() => element.toggleAttribute("data-over", element.scrollWidth > element.clientWidth + 1));
+    watch.observe(element);
+    return () => watch.disconnect();
+  }, []);
   const shown = block.rows.length > 400 ? block.rows.filter((_row, k) => k % Math.ceil(block.rows.length / 400) === 0) : block.rows;
   return (
     <>
       {block.title && <p class="caption">{block.title}</p>}
-      <div class={shown.length > LONG ? "table scroll long" : "table scroll"} tabindex={0} role="region" aria-label={block.title || say("table")}>
-        <table>
-          <thead><tr>{block.columns.map((column) => <th scope="col" class={column.numeric ? "n" : ""}><Symbols text={column.head} />{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
+      <div ref={holder} class={shown.length > LONG ? "table scroll long" : "table scroll"} tabindex={0} role="region" aria-label={block.title || say("table")}>
+        <table class={block.columns.length > 0 && longestOf(block, 0) <= LONG_TEXT ? "short" : ""}>
+          <thead><tr>{block.columns.map((column, k) => <th scope="col" class={headClass(block, k)}><Symbols text={column.head} />{column.unit && column.unit !== "1" ? <span class="unit">, {signed(column.unit)}</span> : null}</th>)}</tr></thead>
           <tbody>
             {shown.map((row) => <tr>{row.map((cell, k) => <td class={block.columns[k]?.numeric ? "n" : ""}>{typeof cell === "number" ? fixed(cell, greatest[k]!) : <Symbols text={typeset(cell ?? "")} />}</td>)}</tr>)}
           </tbody>

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
 
@@ -32,6 +32,10 @@ from centrode.report.texts import parts_of, texts_of
 BREAK = "<wbr>"
 LONG = 60
 """Characters of a left side from which on it is not aligned but runs on with its line."""
+
+
+LONG_TEXT, LONGEST_TEXT = 11, 60
+"""Letters of a table's text from which on its column is not narrower than some words."""
 
 
 def formulas_in(block: Block) -> Iterator[str]:
@@ -110,8 +114,8 @@ class Elements:
         flush = [number for number, _name in zip_longest(block.numbers, block.head, fillvalue=False)]
         kinds = [' class="n"' if number is True else "" for number in flush]
         head = "".join(
-            f'<th scope="col"{kind}>{self.text(name)}</th>'
-            for name, kind in zip(block.head, kinds, strict=False)
+            f'<th scope="col"{_head_class(texts, is_number=number is True)}>{self.text(texts[0])}</th>'
+            for number, texts in zip(flush, zip_longest(block.head, *block.rows, fillvalue=""), strict=False)
         )
         rows = "".join(
             "<tr>"
@@ -125,7 +129,9 @@ class Elements:
             name = f' aria-labelledby="t{block.number}"'
             opening = self._caption_opening(number)
             caption = f'<p class="caption" id="t{block.number}">{opening}{self.text(block.caption)}</p>'
-        drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        first = [row[0] for row in (block.head, *block.rows) if row]
+        short = ' class="short"' if max(map(_letters, first), default=0) <= LONG_TEXT else ""
+        drawn = f"<table{name}{short}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         return f'{caption}<div class="table">{drawn}</div>'
 
     def check(self, block: CheckBlock) -> str:
@@ -188,6 +194,22 @@ def _span(span: Span) -> str:
 
 def _cells(row: Iterable[str], kinds: list[str]) -> Iterator[tuple[str, str]]:
     yield from zip_longest(row, kinds, fillvalue="")
+
+
+def _head_class(texts: Sequence[str], *, is_number: bool) -> str:
+    """The class of a head by its column's texts, the head's first: a long text keeps a few words in a line.
+
+    Where a browser has no room it would break every text at every blank.
+    """
+    longest = max(map(_letters, texts[:1] if is_number else texts))
+    kinds = ["n"] if is_number else []
+    kinds += ["longest"] if longest > LONGEST_TEXT else ["long"] if longest > LONG_TEXT else []
+    return f' class="{" ".join(kinds)}"' if kinds else ""
+
+
+def _letters(marked: str) -> int:
+    """How many letters a text has, about: a formula counts as a symbol with an index."""
+    return sum(2 if part.mathematics else len(part.text) for part in parts_of(marked))
 
 
 def _length(spelled: str) -> int:
