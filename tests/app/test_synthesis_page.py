@@ -20,6 +20,7 @@ from report.test_mechanism_page import AXE
 from .bench import STORE
 from .served import Served, served
 from .test_accessible_bench import AUDIT, WIDE, WIDTHS
+from .test_shared_links import packed
 
 TICKET = "0123456789abcdef" * 2
 POSES = [["0 mm", "0 mm", "0 deg"], ["30 mm", "10 mm", "20 deg"], ["50 mm", "40 mm", "50 deg"]]
@@ -252,3 +253,75 @@ def test_answers(ask: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.Mo
         ("synthesise", {"ticket": "f" * 32, "wanted": {"kind": "path", "targets": [[0, 0]]}}),
     ):
         assert "error" in ask(name, **wrong)
+
+
+OPEN = """# the mechanism of the window
+title = "Lever"
+display = { length = "mm", angle = "deg" }
+
+[frame.points]
+O = [0, 0]
+D = ["92 mm", 0] # stays
+
+[links]
+OA = { length = "40 mm" }
+AB = { length = "112 mm" }
+DB = { length = "116 mm" }
+
+[[drives]]
+link = "OA"
+start = 0
+speed = 1
+
+[assembly]
+sides = { B = "left" }
+"""
+
+
+def test_the_open_mechanism_by_the_keyboard(running: Any, server: Served) -> None:
+    """Other dimensions of what the workbench has: sought, stopped where it is wanted, and put into its text."""
+    page = running.new_page(viewport={"width": 1400, "height": 900})
+    page.set_default_timeout(170_000)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    link = "#m=" + packed(OPEN.encode())
+    page.goto(f"http://127.0.0.1:{server.port}/?token={server.token}&language=uk{link}")
+    page.wait_for_selector(".stage-holder .drawing [data-kind='link']", state="attached")
+    page.goto(f"http://127.0.0.1:{server.port}/synthesis?token={server.token}&language=uk")
+    page.wait_for_selector("#search")
+    page.focus("#of_mechanism")
+    page.keyboard.press("ArrowDown")
+    assert page.input_value("#of_mechanism") == "open" and "Lever" in page.inner_text("#of_mechanism")
+    assert page.locator("#canvas .links").count() == 1
+    page.focus("#kind")
+    for _step in range(3):
+        page.keyboard.press("ArrowDown")
+    assert page.is_visible("#output") and not page.is_visible("#topology")
+    page.select_option("#output", "angle.DB")
+    page.fill("#swing", "60")
+    # only the rocker may change: the others are released with the space bar
+    for path in ("links.OA.length", "links.AB.length"):
+        page.focus(f"[id='free {path}']")
+        page.keyboard.press("Space")
+    page.evaluate(AXE.read_text("utf-8"))
+    assert page.evaluate(AUDIT, ["html", []]) == []
+    page.focus("#search")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#answers .card[aria-pressed='true']")
+    page.focus("#insert")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".stage-holder .drawing [data-kind='link']", state="attached")
+    kept = page.evaluate(f"dispatchEvent(new Event('pagehide')), sessionStorage.getItem('{STORE}')")
+    text = json.loads(kept)["text"]
+    mechanism = parsed_mechanism(text)
+    swing = np.ptp(ct.motion(mechanism, 721).angle.sel(link="DB").to_numpy())
+    assert np.degrees(swing) == pytest.approx(60, abs=0.01)
+    assert "# stays" in text and [mechanism.links[name].length for name in ("OA", "AB")] == [0.04, 0.112]
+    page.click('[data-do="undo"]')
+    page.wait_for_function(
+        "([store, text]) => (dispatchEvent(new Event('pagehide')), JSON.parse(sessionStorage.getItem(store)).text "
+        "=== text)",
+        arg=[STORE, OPEN],
+    )
+    assert errors == []
+    page.close()

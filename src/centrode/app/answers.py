@@ -90,8 +90,8 @@ class Workbench:
             "export": self.export,
             "page": self.page,
             "gears": gear_answer,
-            "synthesis": synthesis_state,
-            "synthesise": synthesis_answers,
+            "synthesis": lambda message: synthesis_state(message, work.folder),
+            "synthesise": lambda message: synthesis_answers(message, work.folder),
         }
 
     def answer(self, message: Message) -> Answer:

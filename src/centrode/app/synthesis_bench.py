@@ -15,11 +15,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from centrode import render
+from centrode.app.documents import TEXT_SIZE
+from centrode.app.open_mechanism import (
+    mechanism_offer,
+    places_of,
+    request_of_mechanism,
+    text_with_answer,
+)
 from centrode.errors import InputError
-from centrode.kinematics.motion import motion
 from centrode.locale import _, mark
 from centrode.model.files import mechanism_text
 from centrode.sheets.texts import Number, Text
@@ -61,6 +65,26 @@ WORDS: Mapping[str, str] = {
     "swing_rocker": mark("the rocker turns by, degrees"),
     "targets_function": mark("or angles of crank and rocker, degrees"),
     "topology": mark("mechanism"),
+    "of_mechanism": mark("Mechanism"),
+    "new_mechanism": mark("a new one"),
+    "open_mechanism": mark("the open one: {title}"),
+    "untitled": mark("Untitled mechanism"),
+    "point": mark("point"),
+    "link": mark("link"),
+    "output": mark("output quantity"),
+    "bounds": mark("Dimensions that may change, mm"),
+    "least": mark("{name}, at least"),
+    "greatest_bound": mark("{name}, at most"),
+    "hint_function_own": mark(
+        "Write rows: a value of the drive, and what the output is there, counted from any zero."
+    ),
+    "hint_strokes_own": mark(
+        "Give what the output moves by, and the ratio of the slow to the fast stroke if it matters."
+    ),
+    "targets_own": mark("values of the drive and of the output, degrees or mm"),
+    "replaced": mark(
+        "This answer replaces the whole text, because its numbers cannot be put into it one by one."
+    ),
     "slider-crank-offset": mark("offset slider-crank linkage"),
     "crank-rocker": mark("crank-rocker linkage"),
     "shaper": mark("shaper with a slotted lever"),
@@ -112,11 +136,13 @@ EVERY = 2
 """Of so many places of a traced curve the page shows one."""
 
 
-def synthesis_state(message: Mapping[str, Any]) -> dict[str, Any]:
-    """The words of the page, or how far its search is, which ends where the page wants it to stop."""
+def synthesis_state(message: Mapping[str, Any], work_folder: Path) -> dict[str, Any]:
+    """The words of the page, what the open mechanism offers, or how far the search is, which the page may end."""
     want = message.get("want")
     if want == "words":
         return {"words": {name: _(word) for name, word in WORDS.items()}}
+    if want == "mechanism":
+        return mechanism_offer(_open_text(message), work_folder)
     if want not in ("progress", "stop"):
         raise InputError("", _("the server does not know this request"))
     folder = _folder(message)
@@ -128,19 +154,23 @@ def synthesis_state(message: Mapping[str, Any]) -> dict[str, Any]:
         return {"share": 0.0}
 
 
-def synthesis_answers(message: Mapping[str, Any]) -> dict[str, Any]:
-    """The answers to what was drawn.
+def synthesis_answers(message: Mapping[str, Any], work_folder: Path) -> dict[str, Any]:
+    """The answers to what was drawn: linkages, or the mechanism of the text of the message with other numbers.
 
     Raises InputError for a request that is none, MotionError where nothing was found.
     """
     wanted = message.get("wanted")
     if not isinstance(wanted, Mapping):
         raise InputError("", _("the message names no description"))
-    tables = {
-        "display": {"length": "mm", "angle": "deg"},
-        "synthesis": {"topology": "crank-rocker", **wanted},
-    }
-    task = SYNTHESES.from_tables(tables)
+    text = _open_text(message) if "text" in message else None
+    if text is not None:
+        task = request_of_mechanism(text, work_folder, wanted)
+    else:
+        tables = {
+            "display": {"length": "mm", "angle": "deg"},
+            "synthesis": {"topology": "crank-rocker", **wanted},
+        }
+        task = SYNTHESES.from_tables(tables)
     with _files(_folder(message)) as folder:
 
         def say(share: float) -> None:
@@ -149,7 +179,19 @@ def synthesis_answers(message: Mapping[str, Any]) -> dict[str, Any]:
             (folder / "new").replace(folder / "share")
 
         found = synthesise(task, say, (folder / "stop").exists)
-    return {"complete": found.complete, "answers": [_row(found, one) for one in found.answers]}
+    rows = [_row(found, one) for one in found.answers]
+    if text is not None:
+        names = tuple(task.synthesis.free)
+        for row, one in zip(rows, found.answers, strict=True):
+            row["text"], row["whole"] = text_with_answer(text, work_folder, names, one.mechanism)
+    return {"complete": found.complete, "answers": rows}
+
+
+def _open_text(message: Mapping[str, Any]) -> str:
+    text = message.get("text")
+    if not isinstance(text, str) or len(text) > TEXT_SIZE:
+        raise InputError("", _("the message names no description"))
+    return text
 
 
 def _folder(message: Mapping[str, Any]) -> Path:
@@ -197,25 +239,13 @@ def _row(found: SynthesisResults, answer: Answer) -> dict[str, Any]:
                 ),
             ]
         )
-    mechanism = answer.mechanism
-    start = mechanism.drives[0].start or 0.0
-    places = motion(mechanism, at=[start]).position.isel(sample=0)
-    points = {
-        str(name): _place(complex(*places.sel(point=name).to_numpy().tolist()))
-        for name in places.point.to_numpy()
-    }
-    frame = np.array(list(mechanism.frame.points.values()), dtype=np.float64).reshape(-1, 2).tolist()
-    points |= {
-        name: _place(complex(x, y)) for name, (x, y) in zip(mechanism.frame.points, frame, strict=True)
-    }
     return {
         "facts": facts,
         "curve": [_place(one) for one in answer.curve[::EVERY]],
         "met": [_place(one) for one in answer.met],
-        "points": points,
-        "fixed": list(mechanism.frame.points),
-        "links": [[name for name in link.points if name in points] for link in mechanism.links.values()],
-        "text": mechanism_text(mechanism),
+        **places_of(answer.mechanism),
+        "text": mechanism_text(answer.mechanism),
+        "whole": False,
     }
 
 

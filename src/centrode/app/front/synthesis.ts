@@ -1,11 +1,12 @@
 // The page of syntheses: a path or poses drawn here, a function or strokes written, mechanisms for it that the server finds, one of them
-// for the workbench.
+// for the workbench. What is sought is a new linkage, or other dimensions of the mechanism that is open in the workbench.
 import { pack } from "./share";
 import { typeset } from "./typeset";
 
 type Point = [number, number];
 type Target = [number, number, number];
-interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; points: Record<string, Point>; fixed: string[]; links: string[][]; text: string }
+interface Found { facts: [string, string][]; curve: Point[]; met: Point[]; points: Record<string, Point>; fixed: string[]; links: string[][]; text: string; whole: boolean }
+interface Offer { title: string; points: string[]; links: string[]; outputs: string[]; crank: string | null; drive: string; numbers: { path: string; name: string; least: number; greatest: number; chosen: boolean }[]; sheet: Found }
 type Answer = Record<string, any> & { id: number; error?: { message: string; repair: string } };
 
 const given = JSON.parse(document.querySelector<HTMLMetaElement>('meta[name="workbench"]')!.content || "{}") as { token?: string; refused?: string };
@@ -58,7 +59,43 @@ const draw = (name: string, attributes: Record<string, string | number>): SVGEle
 const path = (line: Point[], closed = false): string => line.map(([x, y], k) => `${k ? "L" : "M"}${x} ${-y}`).join("") + (closed ? "z" : "");
 const far = (a: Point, b: Point): number => Math.hypot(a[0] - b[0], a[1] - b[1]);
 
-const WIDE = 240, TALL = 160, STEP = 5, TURN = 15; // millimetres of the sheet, of a step of the cross; degrees
+const TURN = 15; // degrees
+interface Sheet { x: number; y: number; wide: number; tall: number; step: number } // millimetres: its middle, its sides, a step of the cross
+const PAPER: Sheet = { x: 0, y: 0, wide: 240, tall: 160, step: 5 };
+const STEPS = 48; // of the cross, from side to side
+
+// A sheet on which a mechanism stands with room around it.
+function sheetOf(one: Found): Sheet {
+  const places = Object.values(one.points), xs = places.map(([x]) => x), ys = places.map(([, y]) => y);
+  const left = Math.min(...xs), right = Math.max(...xs), below = Math.min(...ys), above = Math.max(...ys);
+  const wide = 1.6 * Math.max(right - left, 1.5 * (above - below), 1), fine = wide / STEPS, ten = 10 ** Math.floor(Math.log10(fine));
+  return { x: (left + right) / 2, y: (below + above) / 2, wide, tall: wide / 1.5, step: ([1, 2, 5].find((one) => one * ten >= fine) ?? 10) * ten };
+}
+
+// The text that the workbench has in this window, or had last: with what is kept beside it.
+const STORE = "centrode.workbench";
+function keptBench(): { text: string; before?: unknown[] } | null {
+  for (const store of ["sessionStorage", "localStorage"] as const) {
+    try {
+      const state = JSON.parse(window[store].getItem(STORE) ?? "null");
+      if (state && typeof state.text === "string") return state;
+    } catch {
+      // a forbidden store, or another one's
+    }
+  }
+  return null;
+}
+// The workbench begins with another text, and Undo brings back the one before; false where nothing can be kept.
+function putIntoBench(text: string): boolean {
+  const state = keptBench();
+  if (!state) return false;
+  try {
+    sessionStorage.setItem(STORE, JSON.stringify({ ...state, text, before: [...(Array.isArray(state.before) ? state.before : []), state.text] }));
+    return true;
+  } catch {
+    return false;
+  }
+}
 const CLOSED_POINTS = 20, OPEN_POINTS = 15; // of a line that is dragged
 const BETWEEN = 250; // ms between two questions how far the search is
 
@@ -106,14 +143,40 @@ async function begin(): Promise<void> {
   lost = words.lost!;
   document.title = `${words.title} – centrode`;
 
+  const open = keptBench()?.text.trim() ? keptBench()!.text : null;
+  const asked = open === null ? null : await line.ask({ do: "synthesis", want: "mechanism", text: open });
+  const offer = asked && !asked.error ? (asked as unknown as Offer) : null;
+  const of = make("select", { id: "of_mechanism" }, make("option", { value: "new", textContent: words.new_mechanism! }));
+  if (offer) of.append(make("option", { value: "open", textContent: words.open_mechanism!.replace("{title}", offer.title || words.untitled!) }));
+  const isOpen = (): boolean => of.value === "open";
+  const names = (id: string, given: string[]) => make("select", { id }, ...given.map((one) => make("option", { value: one, textContent: one })));
+  const point = names("point", offer?.points ?? []), link = names("link", offer?.links ?? []), output = names("output", offer?.outputs ?? []);
+  const bounds = make("fieldset", { id: "bounds" }, make("legend", { textContent: words.bounds! }));
+  const ranges = (offer?.numbers ?? []).map((one) => {
+    const box = make("input", { type: "checkbox", checked: one.chosen }), id = `free ${one.path}`;
+    const end = (value: number, word: string) => {
+      const field = make("input", { type: "number", step: "any", value: String(value) });
+      field.setAttribute("aria-label", words[word]!.replace("{name}", one.name));
+      return field;
+    };
+    box.id = id;
+    const least = end(one.least, "least"), greatest = end(one.greatest, "greatest_bound"), row = make("div", { className: "range" });
+    const enable = (): void => { least.disabled = greatest.disabled = !box.checked; };
+    box.addEventListener("change", enable);
+    enable();
+    row.append(box, make("label", { htmlFor: id, textContent: one.name }), least, greatest);
+    bounds.append(row);
+    return { path: one.path, box, least, greatest };
+  });
   const kind = make("select", { id: "kind" }, ...["path", "motion", "function", "strokes"].map((one) => make("option", { value: one, textContent: words[one]! })));
   const check = (id: string, checked: boolean) => make("input", { id, type: "checkbox", checked });
   const closed = check("closed", true), crank = check("crank", true), order = check("order", true);
   const number = (id: string, value: string, properties: Partial<HTMLInputElement> = {}) => make("input", { id, type: "number", step: "any", value, ...properties });
   const choice = (id: string, names: string[], word: (name: string) => string) => make("select", { id }, ...names.map((one) => make("option", { value: one, textContent: words[word(one)]! })));
-  const labelled = (field: HTMLElement, word: string, kinds: string) => {
+  const labelled = (field: HTMLElement, word: string, kinds: string, whose = "") => {
     const row = make("label", {}, words[word]!, field);
     row.dataset.kinds = kinds; // of requests that have this field
+    row.dataset.whose = whose; // of a new mechanism, or of the open one
     return row;
   };
   const formula = make("input", { id: "formula", type: "text", value: "log(x)/log(10)", spellcheck: false });
@@ -140,33 +203,38 @@ async function begin(): Promise<void> {
   crankRow.dataset.kinds = orderRow.dataset.kinds = "path motion";
   const rowsRow = make("label", { className: "rows" }, rowsName, rows);
   rowsRow.dataset.kinds = "path motion function";
+  const ofRow = make("label", { hidden: !offer }, words.of_mechanism!, of);
+  bounds.dataset.kinds = "path motion function strokes";
+  bounds.dataset.whose = "open";
   root.append(
     make("section", {}, make("h1", { textContent: words.title! }), make("p", { textContent: words.lead! }),
-      make("label", {}, words.wanted!, kind),
-      labelled(topology, "topology", "strokes"), labelled(stroke, "wanted_stroke", "strokes"), labelled(swing, "wanted_swing", "strokes"), labelled(slow, "wanted_time_ratio", "strokes"),
-      labelled(formula, "formula", "function"), labelled(from, "x_from", "function"), labelled(to, "x_to", "function"),
-      labelled(turns, "swing_crank", "function"), labelled(swings, "swing_rocker", "function"),
+      ofRow, make("label", {}, words.wanted!, kind),
+      labelled(point, "point", "path motion", "open"), labelled(link, "link", "motion", "open"), labelled(output, "output", "function strokes", "open"),
+      labelled(topology, "topology", "strokes", "new"), labelled(stroke, "wanted_stroke", "strokes"), labelled(swing, "wanted_swing", "strokes"), labelled(slow, "wanted_time_ratio", "strokes"),
+      labelled(formula, "formula", "function", "new"), labelled(from, "x_from", "function", "new"), labelled(to, "x_to", "function", "new"),
+      labelled(turns, "swing_crank", "function", "new"), labelled(swings, "swing_rocker", "function", "new"),
       closedRow, crankRow, orderRow,
       labelled(transmission, "transmission", "path motion function strokes"), labelled(ratio, "length_ratio", "path motion"), labelled(size, "most_size", "path motion"),
-      labelled(trade, "trade_off", "path"), rowsRow,
+      labelled(trade, "trade_off", "path", "new"), rowsRow, bounds,
       make("div", { className: "acts" }, search, stop, clear), share, said,
       make("a", { href: "/", textContent: words.workbench!, id: "workbench" })),
     make("section", {}, make("h2", { textContent: words.drawing! }), canvas, hint),
     make("section", {}, make("h2", { textContent: words.answers! }), list, make("div", { className: "acts" }, insert)));
 
   let targets: Target[] = [], found: Found[] = [], shown = -1, dragged: Point[] | null = null;
-  let cross: Target = [0, 0, 0];
+  let cross: Target = [0, 0, 0], sheet = PAPER;
   const poses = (): boolean => kind.value === "motion", draws = (): boolean => poses() || kind.value === "path";
   const round = (value: number): number => Math.round(value * 100) / 100;
 
   const paint = (): void => {
-    const one = found[shown], base: Point[] = [[-WIDE / 2, -TALL / 2], [WIDE / 2, TALL / 2]];
-    const view = one ? box([...(draws() ? base : []), ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
+    const { x: midX, y: midY, wide, tall, step } = sheet;
+    const one = found[shown] ?? (isOpen() ? offer!.sheet : undefined), base: Point[] = [[midX - wide / 2, midY - tall / 2], [midX + wide / 2, midY + tall / 2]];
+    const view = one ? box([...(draws() || isOpen() ? base : []), ...one.curve, ...Object.values(one.points)], 0.03) : box(base, 0);
     canvas.setAttribute("viewBox", view.join(" "));
-    const unit = Math.max(view[2] / WIDE, view[3] / TALL);
-    const lines = [];
-    if (draws()) for (let x = -WIDE / 2; x <= WIDE / 2; x += 20) lines.push(`M${x} ${-TALL / 2}V${TALL / 2}`);
-    if (draws()) for (let y = -TALL / 2; y <= TALL / 2; y += 20) lines.push(`M${-WIDE / 2} ${y}H${WIDE / 2}`);
+    const unit = Math.max(view[2] / PAPER.wide, view[3] / PAPER.tall);
+    const lines = [], [[left, below], [right, above]] = base as [Point, Point];
+    if (draws()) for (let x = Math.ceil(left / (4 * step)) * 4 * step; x <= right; x += 4 * step) lines.push(`M${x} ${-above}V${-below}`);
+    if (draws()) for (let y = Math.ceil(below / (4 * step)) * 4 * step; y <= above; y += 4 * step) lines.push(`M${left} ${-y}H${right}`);
     const spots = targets.map(([x, y]) => [x, y] as Point);
     const parts: SVGElement[] = [draw("path", { class: "grid", d: lines.join("") })];
     if (one) parts.push(...pictured(one));
@@ -209,14 +277,17 @@ async function begin(): Promise<void> {
   // A rocker has a swing, every other output of strokes a way of its slider.
   const choose = (): void => {
     if (kind.value !== "strokes") return;
-    const rocks = topology.value === "crank-rocker";
+    const rocks = isOpen() ? output.value.startsWith("angle") : topology.value === "crank-rocker";
     swing.parentElement!.hidden = !rocks;
     stroke.parentElement!.hidden = rocks;
   };
   const change = (): void => {
-    hint.textContent = words[`hint_${kind.value}`]!;
-    rowsName.textContent = words[kind.value === "path" ? "targets" : `targets_${kind.value}`] ?? "";
-    for (const row of root.querySelectorAll<HTMLElement>("[data-kinds]")) row.hidden = !row.dataset.kinds!.split(" ").includes(kind.value);
+    hint.textContent = (isOpen() && words[`hint_${kind.value}_own`]) || words[`hint_${kind.value}`]!;
+    rowsName.textContent = words[kind.value === "path" ? "targets" : isOpen() && kind.value === "function" ? "targets_own" : `targets_${kind.value}`] ?? "";
+    for (const row of root.querySelectorAll<HTMLElement>("[data-kinds]")) {
+      row.hidden = !row.dataset.kinds!.split(" ").includes(kind.value) || Boolean(row.dataset.whose && row.dataset.whose !== of.value);
+    }
+    crankRow.hidden ||= isOpen() && !offer!.crank;
     choose();
     clear.hidden = !draws();
     put([]);
@@ -244,9 +315,9 @@ async function begin(): Promise<void> {
     const reach = Math.max(...drawn.map((one) => far(one, first)));
     cross = [last[0], last[1], cross[2]];
     if (poses()) {
-      const turn = far(first, last) > 3 ? round((Math.atan2(last[1] - first[1], last[0] - first[0]) * 180) / Math.PI) : 0;
+      const turn = far(first, last) > 0.6 * sheet.step ? round((Math.atan2(last[1] - first[1], last[0] - first[0]) * 180) / Math.PI) : 0;
       put([...targets, [first[0], first[1], turn]]);
-    } else if (reach < 3) {
+    } else if (reach < 0.6 * sheet.step) {
       put([...targets, [first[0], first[1], 0]]);
     } else {
       closed.checked = far(first, last) < 0.25 * reach;
@@ -259,7 +330,7 @@ async function begin(): Promise<void> {
   canvas.addEventListener("blur", paint);
   canvas.addEventListener("keydown", (event) => {
     if (!draws()) return;
-    const step = event.shiftKey ? 4 * STEP : STEP, [x, y, turn] = cross;
+    const step = event.shiftKey ? 4 * sheet.step : sheet.step, [x, y, turn] = cross;
     const moved: Record<string, Target> = {
       ArrowLeft: [x - step, y, turn], ArrowRight: [x + step, y, turn], ArrowUp: [x, y + step, turn], ArrowDown: [x, y - step, turn],
       ",": [x, y, turn + TURN], ".": [x, y, turn - TURN],
@@ -276,6 +347,7 @@ async function begin(): Promise<void> {
     shown = number;
     [...list.querySelectorAll("button")].forEach((one, k) => one.setAttribute("aria-pressed", String(k === number)));
     insert.disabled = number < 0;
+    if (isOpen() && found[number] && !found[number]!.whole) said.textContent = words.replaced!;
     paint();
   };
   const cards = (): void => {
@@ -291,8 +363,28 @@ async function begin(): Promise<void> {
   };
 
   // What the fields ask for, as a table [synthesis].
+  const degrees = (field: HTMLInputElement): string => `${field.value} deg`;
+  const ofOpen = (): Record<string, unknown> => {
+    const constraints: Record<string, unknown> = {}, turns = output.value.startsWith("angle");
+    if (Number(transmission.value) > 0) constraints.transmission = degrees(transmission);
+    const free = Object.fromEntries(ranges.filter((one) => one.box.checked).map((one) => [one.path, [`${one.least.value} mm`, `${one.greatest.value} mm`]]));
+    if (kind.value === "strokes") {
+      const own = turns ? { swing: degrees(swing) } : { stroke: `${stroke.value} mm` };
+      return { kind: "strokes", of: output.value, ...own, ...(Number(slow.value) > 0 ? { time_ratio: Number(slow.value) } : {}), free, constraints };
+    }
+    if (kind.value === "function") {
+      return { kind: "function", of: output.value, targets: targets.map(([at, other]) => [`${at} ${offer!.drive}`, `${other} ${turns ? "deg" : "mm"}`]), free, constraints };
+    }
+    constraints.order = order.checked;
+    if (crank.checked && offer!.crank) constraints.crank = offer!.crank;
+    if (Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
+    if (Number(size.value) > 0) constraints.size = [`${size.value} mm`, `${size.value} mm`];
+    const places = targets.map(([x, y, turn]) => [`${x} mm`, `${y} mm`, ...(poses() ? [`${turn} deg`] : [])]);
+    if (poses()) return { kind: "motion", point: point.value, link: link.value, targets: places, free, constraints };
+    return { kind: "path", point: point.value, targets: places, closed: closed.checked, free, constraints };
+  };
   const request = (): Record<string, unknown> => {
-    const degrees = (field: HTMLInputElement): string => `${field.value} deg`;
+    if (isOpen()) return ofOpen();
     const angle = Number(transmission.value) > 0 ? { transmission: degrees(transmission) } : {};
     if (kind.value === "strokes") {
       const own = topology.value === "crank-rocker" ? { swing: degrees(swing) } : { stroke: `${stroke.value} mm` };
@@ -333,7 +425,7 @@ async function begin(): Promise<void> {
     share.hidden = stop.hidden = false;
     stop.disabled = false;
     void follow(mine);
-    const got = await line.ask({ do: "synthesise", ticket: mine, wanted: request() });
+    const got = await line.ask({ do: "synthesise", ticket: mine, wanted: request(), ...(isOpen() ? { text: open } : {}) });
     ticket = "";
     search.disabled = false;
     share.hidden = stop.hidden = true;
@@ -349,7 +441,9 @@ async function begin(): Promise<void> {
   stop.addEventListener("click", () => { wantsEnd = true; stop.disabled = true; });
   insert.addEventListener("click", async () => {
     const one = found[shown];
-    if (one) location.href = `/#m=${await pack(one.text)}`;
+    if (!one) return;
+    if (isOpen() && putIntoBench(one.text)) location.href = "/";
+    else location.href = `/#m=${await pack(one.text)}`;
   });
   clear.addEventListener("click", () => put([]));
   rows.addEventListener("input", read);
@@ -358,6 +452,19 @@ async function begin(): Promise<void> {
   topology.addEventListener("change", () => { choose(); forget(); paint(); });
   trade.addEventListener("change", () => { forget(); paint(); });
   kind.addEventListener("change", change);
+  of.addEventListener("change", () => {
+    sheet = isOpen() ? sheetOf(offer!.sheet) : PAPER;
+    cross = [Math.round(sheet.x / sheet.step) * sheet.step, Math.round(sheet.y / sheet.step) * sheet.step, 0];
+    // what bounds a new linkage on the sheet says nothing of one that has its size
+    ratio.value = isOpen() ? "" : "6";
+    size.value = isOpen() ? "" : "500";
+    slow.value = isOpen() ? "" : "1.25";
+    crank.checked = !isOpen();
+    change();
+  });
+  output.addEventListener("change", () => { choose(); forget(); paint(); });
+  for (const field of [point, link]) field.addEventListener("change", () => { forget(); paint(); });
+  bounds.addEventListener("input", () => { forget(); paint(); });
   change();
 }
 
