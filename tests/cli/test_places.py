@@ -35,6 +35,20 @@ def test_no_such_mechanism(refused: Refused, mechanism: str, message: str) -> No
     assert message in refused(None, mechanism=mechanism)
 
 
+def test_a_name_without_its_ending_and_a_file_in_place_of_a_command(
+    centrode: Callable[..., Any], folder: Path, four_bar: str
+) -> None:
+    (folder / "press.toml").write_text(four_bar)
+    without = centrode("check", "press")
+    assert (without.code, without.err) == (
+        2,
+        'Error: press: no such file, and no built-in mechanism of this name; did you mean "press.toml"?\n',
+    )
+    alone = centrode("press.toml")
+    assert alone.code == 2
+    assert alone.err.endswith("Error: a command goes before the file: centrode check press.toml\n")
+
+
 def test_a_folder_instead_of_a_file(refused: Refused, folder: Path) -> None:
     (folder / "press.toml").mkdir()
     assert refused(None) == "press.toml: this is not a file; give the path of a file"

@@ -314,15 +314,21 @@ def test_several_problems_are_told_together(refused: Refused, four_bar: str) -> 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", 'press.toml: "links" is missing'),
-        (b"# nothing\n", 'press.toml: "links" is missing'),
+        (
+            b"",
+            "press.toml: nothing is described: no line has key = value; begin with a built-in one: centrode examp",
+        ),
+        (
+            b"[frame]\n",
+            'press.toml: "links" is missing; write each link below a heading, [links.AB], or begin with',
+        ),
         (b'{"links": {}}', "press.toml, line 1, column 1: not TOML: "),
         (b"[frame.points]\nO = \n", "press.toml, line 2, column 5: not TOML: "),
         (b"[links.OA\n", "press.toml, line 1, column 10: not TOML: "),
         (b"\0" * 100, "press.toml, line 1, column 1: not TOML: "),
         (bytes(range(256)), "press.toml: the file is not text in UTF-8 (byte 128); save it as UTF-8"),
         ('title = "Пресс"'.encode("cp1251"), "press.toml: the file is not text in UTF-8 (byte 9); save it"),
-        ('title = "Press"'.encode("utf-16"), "press.toml: the file is not text in UTF-8 (byte 0); save it"),
+        ('title = "Press"'.encode("utf-16"), "press.toml: the file is text in UTF-16, not in UTF-8; save it"),
     ],
 )
 def test_files_that_are_no_descriptions(refused: Refused, content: bytes, message: str) -> None:

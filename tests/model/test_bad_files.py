@@ -146,7 +146,15 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", 'press.toml: "links" is missing'),
+        (
+            "",
+            "press.toml: nothing is described: no line has key = value; begin with a built-in one: centrode exam",
+        ),
+        ("# words\n", "press.toml: nothing is described"),
+        (
+            'title = "x"',
+            'press.toml: "links" is missing; write each link below a heading, [links.AB], or begin',
+        ),
         ("links = {}", "there are no links"),
         ("x = ", "press.toml, line 1, column 5: not TOML: a value is missing, or a text without quotes"),
         ("a = 1\n[links\n", "press.toml, line 2, column 7: not TOML"),
@@ -277,13 +285,53 @@ def test_missing_file_folder_pipe_and_binary(tmp_path: Path) -> None:
         read_mechanism(tmp_path / "none.toml")
     with pytest.raises(InputError, match="this is not a file"):
         read_mechanism(tmp_path)
-    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")  # no whole text in UTF-16
     with pytest.raises(InputError, match=r"binary.toml: the file is not text in UTF-8 \(byte 0\)"):
         read_mechanism(tmp_path / "binary.toml")
     with pytest.raises(InputError, match="cannot be read"):
         read_mechanism("a\0b")
     with pytest.raises(InputError, match="cannot be read"):
         read_mechanism("a" * 5000)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (FOUR_BAR.encode("utf-16"), "the file is text in UTF-16, not in UTF-8; save it as UTF-8"),
+        (FOUR_BAR.encode("utf-16-le"), "the file is text in UTF-16"),
+        (FOUR_BAR.encode("utf-16-be"), "the file is text in UTF-16"),
+        ('title = "Пресс"'.encode("utf-16"), "the file is text in UTF-16"),
+        ('title = "Пресс"'.encode("cp1251"), r"not text in UTF-8 \(byte 9\); save it as UTF-8"),
+        (b"%PDF-1.7\n%", "this is a PDF, not plain text; give a file of plain text"),
+        (b"PK\x03\x04\x14\x00\x06\x00", "a document of an office program, or an archive"),
+        (b"{\\rtf1\\ansi [links.AB]}", "a document of an office program"),
+        (b"\x89PNG\r\n\x1a\n", "this is a picture"),
+    ],
+)
+def test_files_that_are_no_text_in_utf_8_are_called_what_they_are(
+    tmp_path: Path, content: bytes, message: str
+) -> None:
+    (tmp_path / "press.toml").write_bytes(content)
+    with pytest.raises(InputError, match=rf"^press.toml: .*{message}"):
+        read_mechanism(tmp_path / "press.toml")
+
+
+def test_a_mark_of_utf_8_and_line_ends_of_windows_are_read(tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_bytes(b"\xef\xbb\xbf" + FOUR_BAR.replace("\n", "\r\n").encode())
+    assert read_mechanism(tmp_path / "press.toml") == parse_mechanism(FOUR_BAR)
+
+
+@pytest.mark.parametrize(
+    ("given", "there"),
+    [("pres.toml", "press.toml"), ("Press.toml", "press.toml"), ("report.toml", "report.toml.txt")],
+)
+def test_a_file_that_is_meant_is_named(tmp_path: Path, given: str, there: str) -> None:
+    for name in ("press.toml", "report.toml.txt", "press.txt"):
+        (tmp_path / name).write_text(FOUR_BAR)
+    if given == "Press.toml" and (tmp_path / given).exists():
+        pytest.skip("a file system without capitals")
+    with pytest.raises(InputError, match=f'there is no such file; did you mean "{there}"'):
+        read_mechanism(tmp_path / given)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes here")

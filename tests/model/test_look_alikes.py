@@ -116,6 +116,18 @@ def test_letters_that_look_alike_are_named(old: str, new: str, message: str) -> 
     assert message in told(old, new)
 
 
+def test_a_placed_guide_whose_point_is_mistyped_names_the_letter() -> None:
+    with pytest.raises(InputError) as caught:
+        ct.Mechanism(
+            frame={"points": {"O": [0, 0]}},
+            links={"OA": {"length": 1, "angle": 0}, "AB": {"length": 3, "angle": 0}},
+            guides=[{"point": "\u0412", "through": "placed", "direction": [1, 0]}],
+            drives=[{"link": "OA", "speed": 1}],
+        )
+    told = "\u0412 is written with the Cyrillic letter \u0412, the other names with Latin ones"
+    assert told in str(caught.value)
+
+
 def test_latin_letters_among_cyrillic_names_are_named_too() -> None:
     cyrillic = str.maketrans("ABC", "\u0410\u0412\u0421")
     names = {name: name.translate(cyrillic) for name in ("AB", "BC", "CD")}

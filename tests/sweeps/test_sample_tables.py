@@ -187,8 +187,11 @@ ONES = np.ones(SAMPLES)
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"tables": {"t": ONES[1:]}}, r"tables t: values: 36, and the motion has 37 samples"),
-        ({"tables": {"t": [[1.0]]}}, "values: 1 x 1, and the motion has"),
+        (
+            {"tables": {"t": ONES[1:]}},
+            r"tables t: expected 37 values, one for each sample of the motion, got 36",
+        ),
+        ({"tables": {"t": [[1.0]]}}, "expected 37 values, .* got 1 x 1"),
         ({"tables": {"t": ["a"] * SAMPLES}}, "its values are not numbers"),
         ({"tables": {"t": ONES * np.inf}}, "sample 0 is infinite"),
         ({"tables": {"t": ONES * np.nan}}, "no value at any sample"),

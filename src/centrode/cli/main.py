@@ -15,6 +15,7 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -95,6 +96,14 @@ class ReadingOrder(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of the commands, unsorted."""
         return list(self.commands)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that is named; who names a file in its place is told where the command goes."""
+        if args[0] not in self.commands and (args[0].endswith(".toml") or Path(args[0]).is_file()):
+            ctx.fail(_("a command goes before the file: centrode check {file}").format(file=args[0]))
+        return super().resolve_command(ctx, args)
 
 
 def build_app() -> click.Command:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PlainValidator, model_validator
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.contacts import MOST_CONTACTS, Clamp, EventCondition, Stop
 from centrode.model.drives import Drive, motion_parameter_of
@@ -69,6 +69,13 @@ def _with_points(name: str, link: Link) -> Link:
 
 class Description(DescriptionPart):
     """The parts of a mechanism, each right in itself, not yet checked against each other; see `Mechanism`."""
+
+    repairs: ClassVar[Mapping[str, str]] = {
+        "links": mark(
+            "write each link below a heading, [links.AB], or begin with a built-in mechanism: "
+            "centrode examples crank-rocker --out mine.toml"
+        )
+    }
 
     title: Text = ""
     space: Annotated[Literal["plane", "sphere"], choice("plane", "sphere")] = "plane"

@@ -10,7 +10,7 @@ import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.examples import example_names, example_text
+from centrode.model.examples import FOLDERS, example_names, example_text
 from centrode.model.links import part_tables
 from centrode.model.reading import Problem, nearest, read_file, value_text
 from centrode.model.toml import (
@@ -24,6 +24,9 @@ from centrode.model.toml import (
     with_unit,
 )
 from centrode.model.values import READING, BareAngles
+
+START: Mapping[str, str] = {"linkage": "crank-rocker"}
+"""The built-in description to begin with, where that is not the first of its kind."""
 
 
 class DescriptionFiles(Generic[Described]):
@@ -47,6 +50,12 @@ class DescriptionFiles(Generic[Described]):
     def parse(self, text: str, where: str = "", folder: Path | None = None) -> Described:
         """What a text of TOML describes, files beside it in `folder`; `where` is what messages call it."""
         tables = toml_tables(text, where)
+        if not tables and self.kind in FOLDERS:
+            start = START.get(self.kind) or example_names(self.kind)[0]
+            repair = _("begin with a built-in one: centrode examples {name} --out mine.toml").format(
+                name=start
+            )
+            raise InputError(where, _("nothing is described: no line has key = value"), repair)
         return self.from_tables(tables, where, folder, bare_angles_of(tables))
 
     def from_tables(

@@ -9,7 +9,17 @@ from typing import TypeVar
 from centrode.locale import _
 from centrode.model.description import Description
 from centrode.model.links import Frame, Guide
-from centrode.model.reading import FRAME, FrozenMap, Place, Problem, Problems, error_at_place, value_text
+from centrode.model.look_alikes import look_alike
+from centrode.model.reading import (
+    FRAME,
+    FrozenMap,
+    Place,
+    Problem,
+    Problems,
+    error_at_place,
+    likely,
+    value_text,
+)
 from centrode.model.values import (
     Placed,
     Vector,
@@ -75,7 +85,9 @@ class InitialChain:
             point=value_text(point)
         )
         if not missing:
-            return Problem(what, _("give its coordinates"), at)
+            names = [name for name in self.mechanism.points if name != point]
+            mistyped = look_alike(point, names) is not None
+            return Problem(what, likely(point, names) if mistyped else _("give its coordinates"), at)
         return Problem(what, _("give the initial angle of {links}").format(links=", ".join(missing)), at)
 
     @cached_property

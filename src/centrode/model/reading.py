@@ -16,7 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, Wr
 
 from centrode.errors import InputError
 from centrode.files.inputs import note
-from centrode.locale import _, ngettext
+from centrode.locale import _, mark, ngettext
 from centrode.model.look_alikes import in_latin, letters_note, likeness_note, look_alike, look_alike_pairs
 
 # What a file may ask for at most: a text that asks for more is refused before anything is built from it.
@@ -225,11 +225,45 @@ def read_file(path: Path) -> str:
         read), or not UTF-8.
     """
     content = read_content(path, FILE_SIZE)
+    for signature, what in _SIGNATURES.items():
+        if content.startswith(signature):
+            raise InputError(_shown_name(path), _(what), _("give a file of plain text"))
+    if _is_utf16(content):
+        what = _("the file is text in UTF-16, not in UTF-8")
+        repair = _(
+            "save it as UTF-8 (Notepad: Save as, Encoding); in PowerShell write files by --out, not by >"
+        )
+        raise InputError(_shown_name(path), what, repair)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         what = _("the file is not text in UTF-8 (byte {place})").format(place=error.start)
-        raise InputError(_shown_name(path), what, _("save it as UTF-8")) from None
+        raise InputError(
+            _shown_name(path), what, _("save it as UTF-8 (Notepad: Save as, Encoding)")
+        ) from None
+
+
+_OFFICE = mark("this is a document of an office program, or an archive, not plain text")
+_PICTURE = mark("this is a picture, not plain text")
+_SIGNATURES: Mapping[bytes, str] = {
+    b"%PDF-": mark("this is a PDF, not plain text"),
+    b"PK\x03\x04": _OFFICE,
+    b"\xd0\xcf\x11\xe0": _OFFICE,
+    b"{\\rtf": _OFFICE,
+    b"\x89PNG": _PICTURE,
+    b"\xff\xd8\xff": _PICTURE,
+}
+"""How files begin that somebody may take for a description."""
+
+
+def _is_utf16(content: bytes) -> bool:
+    """Whether bytes are a text in UTF-16: after its mark, or, as Latin letters have there, with a zero beside each."""
+    if len(content) < 4 or len(content) % 2:
+        return False
+    zeros = [content[start:200:2].count(0) for start in (0, 1)]
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return max(zeros) > 0
+    return max(zeros) > 0.8 * len(content[:200:2]) and min(zeros) == 0
 
 
 def read_content(path: Path, most: int) -> bytes:
@@ -248,10 +282,23 @@ def read_content(path: Path, most: int) -> bytes:
             raise InputError(where, what.format(size=status.st_size, most=most))
         return content
     except FileNotFoundError:
-        raise InputError(where, _("there is no such file"), _("check the path")) from None
+        repair = _file_meant(path) or _("check the path")
+        raise InputError(where, _("there is no such file"), repair) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(where, _("the file cannot be read: {reason}").format(reason=reason)) from None
+
+
+def _file_meant(path: Path) -> str:
+    """Repair that names a file beside the path whose name is near; empty where there is none."""
+    try:
+        # a folder may hold anything: the first thousands are enough
+        beside = [entry.name for entry in islice(path.parent.iterdir(), 2000) if entry.is_file()]
+    except (OSError, ValueError):
+        return ""
+    longer = f"{path.name}.txt"  # Windows shows no endings
+    same_kind = [name for name in beside if name.endswith(path.suffix)]
+    return likely(path.name, [longer] if longer in beside else same_kind)
 
 
 def _shown_name(path: Path) -> str:
@@ -289,6 +336,8 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
 
     among_keys: ClassVar[str] = ""
     """Field of which a file writes the entries among the keys of the part; none if empty."""
+    repairs: ClassVar[Mapping[str, str]] = {}
+    """What to write where a key is missing, for keys that beginners leave out."""
 
     @classmethod
     def keys(cls) -> dict[str, str]:
@@ -315,7 +364,7 @@ class DescriptionPart(BaseModel, metaclass=_Telling):
         keys = cls.keys()
         unknown = unknown_keys(given, keys, cls.model_fields, cls.keys_below)
         missing = [
-            missing_key(key)
+            missing_key(key, _(cls.repairs.get(key, "")))
             for key, name in keys.items()
             if cls.model_fields[name].is_required() and key not in given and name not in given
         ]
@@ -355,9 +404,9 @@ def unknown_keys(
     ]
 
 
-def missing_key(key: str) -> Problem:
+def missing_key(key: str, repair: str = "") -> Problem:
     """The problem of a key that has to be given."""
-    return Problem(_("{key} is missing").format(key=value_text(key)))
+    return Problem(_("{key} is missing").format(key=value_text(key)), repair)
 
 
 def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:

@@ -67,7 +67,11 @@ _COMMA = re.compile(r"=[ \t]*+([+-]?\d++),(\d++)([ \t]*+)")
 _NUMBER = re.compile(r"(?:[=\[,]|^)[ \t]*+([+-]?\d[\d_.]*+(?:[eE][+-]?\d++)?+)[ \t]*+$")
 _UNIT = re.compile(r"([^\W\d_]|[°%])[^\s,\]}#=\"']*+(?![ \t]*+=)")
 _WORD = re.compile(r"[\w-]+")
-TYPOGRAPHIC = tuple("“”„‟«»‘’‚")
+_BARE = re.compile(r"([^\W\d][\w-]*+)[ \t\r]*+(?:#.*)?")
+TYPOGRAPHIC, DASHES = tuple("“”„‟«»‘’‚"), tuple("−–—‐‑")
+INVISIBLE = tuple("\u200b\u200c\u200d\u2060\ufeff\u00ad\u200e\u200f")
+BARE_VALUES = ("true", "false", "inf", "nan")
+"""Words that are values of TOML in small letters."""
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -227,7 +231,13 @@ def _not_toml(message: str, text: str, where: str) -> InputError:
         line, column = int(match.group(2)), int(match.group(3))
         # Lines as the parser counts them: `splitlines` would part a text at other characters too.
         written, at = text.split("\n")[line - 1], column - 1
-        reason, repair = _mistyped_number(written, at) or _unquoted_letter(written, at) or (reason, repair)
+        reason, repair = (
+            _mistyped_number(written, at)
+            or _wrong_sign(written, at)
+            or _unquoted_letter(written, at)
+            or _unquoted_text(written, at)
+            or (reason, repair)
+        )
     else:
         lines = text.splitlines() or [""]
         line, column = len(lines), len(lines[-1]) + 1
@@ -252,10 +262,34 @@ def _mistyped_number(line: str, at: int) -> tuple[str, str] | None:
     return None
 
 
-def _unquoted_letter(line: str, at: int) -> tuple[str, str] | None:
-    """Reason and repair where the parser stopped at typographic quotes, or in a bare key at a letter beyond a to z."""
-    if line[at : at + 1] in TYPOGRAPHIC:
+def _wrong_sign(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped at a sign that documents have in place of one of the keyboard."""
+    sign = line[at : at + 1]
+    if sign in TYPOGRAPHIC:
         return _("these quotes are typographic"), _('type straight ones: "..."')
+    if sign in DASHES:
+        return _("this minus is typographic"), _("type the one of the keyboard: -")
+    if sign and (sign in INVISIBLE or (sign.isspace() and sign not in " \t\r")):
+        what = _("a space or an invisible character that TOML does not know (U+{code:04X})")
+        return what.format(code=ord(sign)), _("remove it, or type an ordinary space")
+    if line.startswith("```"):
+        return _("``` belongs to the document, not to the example"), _("remove this line")
+    return None
+
+
+def _unquoted_text(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where a value is a bare word."""
+    word = _BARE.fullmatch(line[at:]) if line[:at].rstrip().endswith("=") else None
+    if word is None:
+        return None
+    if word.group(1).casefold() in BARE_VALUES:
+        what = _("TOML writes this word in small letters")
+        return what, _("write {number}").format(number=word.group(1).casefold())
+    return _("a text stands in quotes"), _("write {number}").format(number=value_text(word.group(1)))
+
+
+def _unquoted_letter(line: str, at: int) -> tuple[str, str] | None:
+    """Reason and repair where the parser stopped in a bare key at a letter beyond a to z."""
     key = next((one for one in _WORD.finditer(line) if one.start() <= at < one.end()), None)
     heading = line.lstrip().startswith("[") and "]" not in line[:at]
     is_key = key and (heading or line[key.end() :].lstrip()[:1] in ("=", "."))

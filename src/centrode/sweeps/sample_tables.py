@@ -102,11 +102,11 @@ def _table(where: str, given: Any, samples: int) -> SampleTable:
     if values.shape != (samples,):
         count = " x ".join(map(str, values.shape)) or "1"
         what = ngettext(
-            "values: {count}, and the motion has {n} sample",
-            "values: {count}, and the motion has {n} samples",
+            "expected {n} value, one for each sample of the motion, got {count}",
+            "expected {n} values, one for each sample of the motion, got {count}",
             samples,
         ).format(count=count, n=samples)
-        raise InputError(where, what, _("give one value for each sample, NaN where there is none"))
+        raise InputError(where, what, _("give NaN where there is no value"))
     if np.isinf(values).any():
         what = _("the value of sample {number} is infinite").format(number=int(np.isinf(values).argmax()))
         raise InputError(where, what, _("give NaN where there is no value"))

@@ -208,7 +208,9 @@ def _file(file_or_example: str | Path) -> Path | None:
         return None
     if path.exists():
         return path
-    near = likely(name, names)
+    with_ending = f"{name}.toml"
+    beside = Path(with_ending).is_file()
+    near = _("did you mean {name}?").format(name=value_text(with_ending)) if beside else likely(name, names)
     raise InputError(
         value_text(name)[1:-1],
         _("no such file, and no built-in mechanism of this name"),
