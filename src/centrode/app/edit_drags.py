@@ -40,7 +40,7 @@ Assignment: TypeAlias = tuple[Place, Any]
 STANDS = 2e-4
 """So far [of the extent] a joint may stand from where it was dragged to: numbers of a file are rounded."""
 ON_LINE = 3e-5
-"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it: places are rounded to 1e-5."""
+"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it, as numbers are rounded."""
 APART = 1e-9
 """Places farther apart than this [of the extent] are two."""
 SHORTEST = 1e-9
