@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from operator import mul
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from centrode.app.quantity_texts import written_quantity
@@ -93,15 +94,21 @@ def reshape(
 
 
 def reshaped_by(
-    sketch: SketchParts, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
+    sketch: SketchParts,
+    moved: Mapping[str, Vector],
+    folder: Path,
+    *,
+    held: str = "",
+    exactly: bool = False,
+    also: Mapping[Place, Any] = MappingProxyType({}),
 ) -> ReshapedDescription:
-    """The description with some points at other places, everything else standing.
+    """The description with some points at other places, everything else standing but what is `also` written.
 
     Raises InputError where it would not assemble so.
     """
     assignments = tuple(
         (place, value)
-        for place, value in reshaping_assignments(sketch, moved, exactly=exactly)
+        for place, value in {**dict(reshaping_assignments(sketch, moved, exactly=exactly)), **also}.items()
         if value != value_at_place(sketch.tables, place)
     )
     tables: Mapping[str, Any] = with_assignments(sketch.tables, assignments)
@@ -114,7 +121,7 @@ def reshaped_by(
         if exactly:
             raise
         # at a limit, and with redundant constraints, rounded numbers may not close
-        return reshaped_by(sketch, moved, folder, held=held, exactly=True)
+        return reshaped_by(sketch, moved, folder, held=held, exactly=True, also=also)
     at = prepared.assembled.positions.points
     places = {name: tuple(map(float, at[name])) for name in sketch.points if name in at}
     return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)
