@@ -6,11 +6,14 @@ import base64
 import math
 import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from centrode.app.documents import read_document
+from centrode.app.sketch import SketchParts
 from centrode.model.examples import example_text
 from report.browser import browser, frames
 
@@ -414,6 +417,71 @@ def test_a_joint_dropped_on_another_one_is_joined(running: Any, server: Served) 
         one.gesture(lambda: one.page.keyboard.press("ArrowUp"))
         assert one.tables["links"]["DC"]["length"] != first["links"]["DC"]["length"]
         assert one.tables["frame"] == first["frame"]
+        assert one.messages == []
+
+
+def test_a_hand_lets_go_and_keeps_to_links(running: Any, server: Served) -> None:
+    """Escape drops nothing, no key acts under a hand; a line from a link is one step, its point the link's middle."""
+    with bench(running, server.address) as one:
+        four_bar(one)
+        before, mouse, press = one.text, one.page.mouse, one.page.keyboard.press
+        for mode in ("draw", "edit"):
+            one.mode(mode)
+            mouse.move(*one.spot("C"))
+            mouse.down()
+            mouse.move(*one.spot((0.5, 0.5)), steps=4)
+            for key in ("Control+z", "Delete", "Escape"):
+                press(key)
+            mouse.move(*one.spot((0.45, 0.5)))
+            mouse.up()
+            one.settle()
+            assert one.text == before and one.page.locator(".sketch > *").count() == 0
+        one.mode("draw")
+        one.page.locator('[data-do="seek"]').fill("100")  # the drawing goes back, the hand keeps what it took
+        one.draw("BC", (0.85, 0.3))
+        at = places_of(one)
+        assert at["E"] == pytest.approx((at["B"] + at["C"]) / 2, abs=1e-4)
+        assert one.tables["links"]["BC"]["points"] == ["B", "C", "E"] and len(one.names("link")) == 4
+        one.gesture(lambda: press("Control+z"))
+        assert one.text == before
+        one.mode("guide")
+        one.draw("C", "AB")
+        assert one.tables["guides"] == [{"point": "C", "on": "AB", "direction": [1, 0]}]
+        one.gesture(lambda: press("Control+z"))
+        one.click("C")
+        name = one.page.locator(".rename input")
+        name.fill("B")
+        name.press("Enter")
+        one.wait("document.querySelector('.rename input').ariaInvalid === 'true'")
+        name.blur()
+        assert name.input_value() == "C" and one.text == before
+        assert one.messages == []
+
+
+DROPPED = """(text) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text], "dropped.toml"));
+  return dispatchEvent(new DragEvent("drop", { dataTransfer, cancelable: true }));
+}"""
+
+
+def test_a_file_that_is_dropped_on_the_page_is_opened_where_it_begins(running: Any, server: Served) -> None:
+    """The range of the drive begins elsewhere: in Edit the joints stand at the place of the description."""
+    text = example_text("double-rocker")
+    places = SketchParts(read_document(text, Path())).places
+    with bench(running, server.address) as one:
+        one.gesture(lambda: one.page.evaluate(DROPPED, text))
+        one.motion()
+        one.mode("edit")
+        frames(one.page)
+        seen = {name: np.array(one.spot(name)) for name in "OBD"}
+        shown = math.dist(seen["B"], seen["D"]) / math.dist(seen["O"], seen["D"])
+        drawn = math.dist(places["B"], places["D"]) / math.dist(places["O"], places["D"])
+        across = math.dist(seen["O"], seen["B"]) / math.dist(seen["O"], seen["D"])
+        assert shown == pytest.approx(drawn, rel=2e-3)
+        assert across == pytest.approx(
+            math.dist(places["O"], places["B"]) / math.dist(places["O"], places["D"]), rel=2e-3
+        )
         assert one.messages == []
 
 

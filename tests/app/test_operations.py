@@ -303,6 +303,48 @@ def test_units_are_those_of_the_author():
     assert 'B = ["900 mm", "61 cm"]' in patch.text
 
 
+SLIDER = [
+    {"do": "add_link", "at": [0, 0], "to": [0.3, 0.4]},
+    {"do": "add_link", "at": [0.3, 0.4], "to": [1.5, 0.5], "from_point": "B"},
+    {"do": "add_guide", "at": [1.5, 0.5], "direction": [3, 1], "point": "C"},
+    {"do": "set_row", "object": "AB", "row": "drive", "on": True},
+]
+
+
+def test_a_copy_of_a_slider_slides():
+    """Chosen with its guide it is the same mechanism beside: driven alike, its points move alike."""
+    chosen = {"do": "duplicate", "objects": ["AB", "BC", "guide 1"], "by": [5, 0]}
+    text = patch_of("", *SLIDER, chosen, {"do": "set_row", "object": "DE", "row": "drive", "on": True}).text
+    turns = ct.motion(ct.parse_mechanism(text), 13).position
+    assert turns.sel(point="F").values == pytest.approx(turns.sel(point="C").values + [5, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_a_mirror_image_slides_on_the_image_of_its_line(axis):
+    """By the closed form: the slider's line has the other slope, so mirrored backward turns give mirrored places."""
+    text = patch_of("", *SLIDER).text
+    image = patch_of(text, {"do": "mirror", "objects": ["AB", "BC", "guide 1"], "axis": axis}).text
+    along = "-18.4349 deg"
+    assert read_document(image, HERE).tables["guides"][0]["direction"] == along
+    first = ct.motion(ct.parse_mechanism(text), 13).position.sel(point="C").values
+    second = ct.motion(ct.parse_mechanism(image), 13).position.sel(point="C").values[::-1]
+    flip = 1 if axis == "x" else 0
+    middle = (first[0] + second[0])[flip] / 2
+    assert second[:, flip] == pytest.approx(2 * middle - first[:, flip], abs=2e-4)
+    assert second[:, 1 - flip] == pytest.approx(first[:, 1 - flip], abs=2e-4)
+
+
+def test_a_mirror_image_of_a_line_with_a_place_of_its_own():
+    text = example_text("slider-crank-offset")
+    chosen = {"do": "mirror", "objects": [*SketchParts(read_document(text, HERE)).links], "axis": "x"}
+    once = patch_of(text, chosen)
+    before, after = (ct.motion(ct.parse_mechanism(one), 9) for one in (text, once.text))
+    assert float(after.slide.max() - after.slide.min()) == pytest.approx(
+        float(before.slide.max() - before.slide.min()), rel=1e-3
+    )
+    assert once.document.tables["guides"] != read_document(text, HERE).tables["guides"]
+
+
 REFUSALS = [
     ({"do": "add_link", "at": [0, 0], "to": [0, 0]}, "the link is too short"),
     ({"do": "add_link", "at": [0, 0], "to": [1, 1], "from_point": "A", "to_point": "B"}, "both belong to AB"),

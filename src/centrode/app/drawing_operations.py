@@ -94,6 +94,8 @@ def add_point(patch: Patch, operation: Operation) -> None:
     if name in sketch.links[link]:
         raise InputError("", _("link {link} has this point already").format(link=link))
     points = sketch.links[link]
+    if any(sketch.guides[k].get("on", FRAME) == link for k in sketch.guides_of(name)):
+        raise InputError(name, _("this point slides in a guide: remove the guide first"))
     if f"links.{link}.length" in sketch.marks["locked"]:
         patch.set_mark("locked", f"links.{link}.length", False)  # of more than two points none is the length
     if follows_from_points(sketch, link):

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import mul
 from typing import Any
 
-from centrode.app.edit_drags import reshaped_by
+from centrode.app.drawing_operations import written_direction
+from centrode.app.edit_drags import reshaped_by, written_place
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import SketchParts, Vector, on_unit_sphere
+from centrode.app.sketch import SketchParts, Vector, coordinates, direction_angle, guide_name, on_unit_sphere
 from centrode.app.state_rows import set_ground
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.reading import two_points
+from centrode.model.reading import FRAME, Place, two_points
 from centrode.model.values import cross
 
 QUARTER = math.pi / 2
 BESIDE = math.pi / 12
 """Angle [rad] by which a copy stands beside what it is of, on the sphere."""
+ON_AXIS = 1e-9
+"""Angle [rad] within which a line is its own mirror image."""
 POLAR = 1e-6
 """Distance [rad] from a pole within which no direction is east."""
 
@@ -41,11 +44,22 @@ def duplicate(patch: Patch, operation: Operation) -> None:
             point: (sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]) for point in points
         }
     new = {point: patch.new_point(place) for point, place in places.items()}
+    copies: dict[str, str] = {FRAME: FRAME}
     for point in points:
         if point in sketch.frame_points:
             set_ground(patch, new[point], True)
     for link in links:
         _copy_link(patch, sketch, link, new)
+        copies[link] = patch.named[-1]
+    for k, guide in enumerate(() if sketch.on_sphere else sketch.guides):
+        carried = guide.get("on", FRAME) in copies and guide.get("point") in new
+        # a line through a place of its own stays the line of the original
+        if carried and guide_name(sketch, k) in operation["objects"] and guide.get("through") is None:
+            entries = {"direction": guide["direction"]}
+            patch.add_entry(
+                "guides", {"point": new[guide["point"]], "on": copies[guide.get("on", FRAME)], **entries}
+            )
+            patch.named.append(guide_name(patch.sketch, len(patch.sketch.guides) - 1))
 
 
 def _turned_places(patch: Patch, operation: Operation, places: Mapping[str, Vector]) -> dict[str, Vector]:
@@ -161,6 +175,7 @@ def mirror(patch: Patch, operation: Operation) -> None:
     for point in points:
         if point in sketch.marks["fixed"]:
             raise InputError(point, _("this joint is held: switch Fixed off to drag it"))
+    guides: dict[Place, Any] = {}
     if sketch.on_sphere:
         normal = _circle_of_mirror(patch, operation.get("axis"), known)
         moved = {point: reflect_in_plane(sketch.places[point], normal) for point in points}
@@ -171,7 +186,42 @@ def mirror(patch: Patch, operation: Operation) -> None:
         for point in points:
             u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
             moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
-    patch.write(*reshaped_by(sketch, moved, patch.folder).assignments)
+        guides = dict(_mirrored_guides(patch, moved, (x, y), direction))
+    patch.write(*reshaped_by(sketch, moved, patch.folder, also=guides).assignments)
+
+
+def _mirrored_guides(
+    patch: Patch, moved: Mapping[str, Vector], axis: Vector, direction: float
+) -> Iterator[tuple[Place, Any]]:
+    """Lines of the points that are mirrored: of the frame, and of links that are mirrored whole."""
+    sketch = patch.sketch
+    for k, guide in enumerate(sketch.guides):
+        point, on = str(guide.get("point")), str(guide.get("on", FRAME))
+        if point not in moved or not (on == FRAME or set(sketch.links.get(on, (FRAME,))) <= set(moved)):
+            continue
+        # the axes of a link are mirrored with it: in them the line is mirrored in the first one
+        foot, turn = (axis, 2.0 * direction) if on == FRAME else ((0.0, 0.0), 0.0)
+        angle, through = direction_angle(guide.get("direction")), coordinates(guide.get("through"))
+        if angle is None:
+            continue
+        if abs(math.remainder(turn - 2.0 * angle, math.pi)) > ON_AXIS:
+            written = written_direction(patch, turn - angle)
+            yield ("guides", k, "direction"), written
+            angle = direction_angle(written) or 0.0
+        if through is None:
+            continue
+        u, v = through[0] - foot[0], through[1] - foot[1]
+        image = (
+            foot[0] + u * math.cos(turn) + v * math.sin(turn),
+            foot[1] + u * math.sin(turn) - v * math.cos(turn),
+        )
+        yield from written_place(sketch, ("guides", k, "through"), image)
+        for drive in sketch.drives_of(str(guide.get("name", point))) if on == FRAME else ():
+            slide = math.cos(angle) * (moved[point][0] - image[0]) + math.sin(angle) * (
+                moved[point][1] - image[1]
+            )
+            if sketch.drives[drive].get("start") is not None:
+                yield ("drives", drive, "start"), patch.length(slide, sketch.drives[drive]["start"])
 
 
 def _circle_of_mirror(patch: Patch, axis: Any, places: Sequence[Vector]) -> Vector:

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from operator import mul
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from centrode.app.quantity_texts import written_quantity
@@ -40,9 +41,7 @@ Assignment: TypeAlias = tuple[Place, Any]
 STANDS = 2e-4
 """So far [of the extent] a joint may stand from where it was dragged to: numbers of a file are rounded."""
 ON_LINE = 3e-5
-"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it: coordinates of all three are
-rounded to a hundred-thousandth.
-"""
+"""Points nearer than this [of the extent] to the line of two joints keep their ratio on it, as numbers are rounded."""
 APART = 1e-9
 """Places farther apart than this [of the extent] are two."""
 SHORTEST = 1e-9
@@ -95,15 +94,21 @@ def reshape(
 
 
 def reshaped_by(
-    sketch: SketchParts, moved: Mapping[str, Vector], folder: Path, *, held: str = "", exactly: bool = False
+    sketch: SketchParts,
+    moved: Mapping[str, Vector],
+    folder: Path,
+    *,
+    held: str = "",
+    exactly: bool = False,
+    also: Mapping[Place, Any] = MappingProxyType({}),
 ) -> ReshapedDescription:
-    """The description with some points at other places, everything else standing.
+    """The description with some points at other places, everything else standing but what is `also` written.
 
     Raises InputError where it would not assemble so.
     """
     assignments = tuple(
         (place, value)
-        for place, value in reshaping_assignments(sketch, moved, exactly=exactly)
+        for place, value in {**dict(reshaping_assignments(sketch, moved, exactly=exactly)), **also}.items()
         if value != value_at_place(sketch.tables, place)
     )
     tables: Mapping[str, Any] = with_assignments(sketch.tables, assignments)
@@ -116,7 +121,7 @@ def reshaped_by(
         if exactly:
             raise
         # at a limit, and with redundant constraints, rounded numbers may not close
-        return reshaped_by(sketch, moved, folder, held=held, exactly=True)
+        return reshaped_by(sketch, moved, folder, held=held, exactly=True, also=also)
     at = prepared.assembled.positions.points
     places = {name: tuple(map(float, at[name])) for name in sketch.points if name in at}
     return ReshapedDescription(assignments, tables, prepared, places, _values(sketch, places, moved), held)

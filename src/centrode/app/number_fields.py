@@ -119,7 +119,10 @@ def drop_point(patch: Patch, point: str, to: Vector) -> None:
 
 def _stands_there(sketch: SketchParts, place: Vector, wished: Vector) -> bool:
     """Whether a joint stands where it was put, but for rounded numbers."""
-    return math.dist(place, on_unit_sphere(wished) or place if sketch.on_sphere else wished) <= STANDS * sketch.size
+    return (
+        math.dist(place, on_unit_sphere(wished) or place if sketch.on_sphere else wished)
+        <= STANDS * sketch.size
+    )
 
 
 def lock(patch: Patch, operation: Operation) -> None:

@@ -36,8 +36,8 @@ WORDS: Mapping[str, str] = {
         "Drag to draw a link; drop it on a joint to make a hinge. Double-click a link to give it a point."
     ),
     "mode_guide_hint": mark(
-        "Drag a line to make a guide; begin it at a joint to let that joint slide along it, and end it on a link to let "
-        "the joint slide in that link."
+        "Drag a line to make a guide; begin it at a joint to let that joint slide along it, and end it on a link to "
+        "let the joint slide in that link."
     ),
     "mode_edit_hint": mark(
         "Drag a joint to change the lengths of its links; drop it on another joint to make one of the two."

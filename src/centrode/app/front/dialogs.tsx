@@ -6,7 +6,7 @@ import { byHand, copyText } from "./motion_panel";
 import { photo, put, readPhoto, scalePhoto, scaleTo } from "./photo";
 import type { Place, Template } from "./protocol";
 import { unpack } from "./share";
-import { BLANK, LINK, ask, available, fileName, fileNow, hello, link, load, mode, options, refused, savedAs, scene, takeTyped, tell, text, unsaved } from "./state";
+import { BLANK, LINK, ask, available, fileName, fileNow, fits, hello, link, load, mode, options, refused, savedAs, scene, takeTyped, tell, text, unsaved } from "./state";
 import { token } from "./token";
 import { language, say, sentences, spelled, unitText } from "./words";
 
@@ -303,6 +303,8 @@ function PhotoWindow() {
               if (!(value > 0)) return;
               scaleTo(measured.value!.from, measured.value!.to, value);
               dialog.value = "";
+              tell("");
+              if (!scene.value?.points.length) fits.value += 1; // what is drawn next is drawn over the photo
             }}>
               <label for="photo-length">{say("photo_length")}</label>
               <input id="photo-length" type="text" inputMode="decimal" required pattern={LENGTH.source} value={length.value} onInput={(event) => { length.value = event.currentTarget.value; }} />

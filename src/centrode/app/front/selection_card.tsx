@@ -79,11 +79,11 @@ function StateRow({ name, row, of }: { name: RowName; row: Row | undefined; of: 
   );
 }
 
-function DimensionRow({ one }: { one: Dimension }) {
+function DimensionRow({ one, among }: { one: Dimension; among: boolean }) {
   const lockable = one.lockable ?? /\.length$/.test(one.path);
   return (
     <div class="dimension">
-      <label for={`dimension-${one.path}`}>{one.name}</label>
+      <label for={`dimension-${one.path}`}>{among ? `${one.name}(${one.of})` : one.name}</label>
       <input id={`dimension-${one.path}`} type="text" inputMode="decimal" value={one.shown} data-path={one.path} autocomplete="off" onBlur={(event) => leave(event.currentTarget, one.shown)}
         onChange={(event) => { const { value } = event.currentTarget; void attempt(event.currentTarget, one.shown, () => edit({ do: "set", path: one.path, value })); }} />
       <span class="unit">{signed(one.unit)}</span>
@@ -127,7 +127,7 @@ export function SelectionCard() {
         <>
           <div class="states">{ROWS.map((name) => <StateRow name={name} row={joint(name)} of={able(name)} key={`${first} ${name}`} />)}</div>
           <p class="why" id="row-why" aria-live="polite">{why.value}</p>
-          {dimensions.length > 0 && <div class="dimensions">{dimensions.map((one) => <DimensionRow one={one} key={one.path} />)}</div>}
+          {dimensions.length > 0 && <div class="dimensions">{dimensions.map((one) => <DimensionRow one={one} among={names.length > 1} key={one.path} />)}</div>}
         </>
       )}
       {first && (

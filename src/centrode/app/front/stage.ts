@@ -195,6 +195,8 @@ export class Stage {
       const reach = Math.max(...cam.outline.map((place) => size(minus(place, cam.centre))));
       for (const side of [-reach, reach]) take(cam.centre.map((value) => value + side));
     }
+    const behind = this.spherical ? null : photo.peek();
+    if (behind) for (const share of [0, 1]) take([behind.x + share * behind.wide, behind.y + share * behind.high]);
     return { low, high };
   }
 
@@ -539,7 +541,7 @@ export class Stage {
     const label = make("text", { x: b[0]! + (right ? 130 : -130), y: b[1]! + (b[1]! <= a[1]! ? -90 : 190), "text-anchor": right ? "start" : "end" }, this.hint);
     const angle = (Math.atan2(way[1]!, way[0]!) * 180) / Math.PI, length = this.spherical ? arc(line.from, line.to) : size(way);
     const measured = withUnit(spelled(length * unit.factor, 4), unit.unit);
-    label.textContent = this.spherical ? measured : line.guide ? withUnit(spelled(angle, 4), "°") : `${measured} · ${withUnit(spelled(angle, 4), "°")}`;
+    label.textContent = this.spherical ? measured : line.guide && !scalePhoto.peek() ? withUnit(spelled(angle, 4), "°") : `${measured} · ${withUnit(spelled(angle, 4), "°")}`;
   }
 
   // A line that was drawn becomes a link or a guide; a place on a link becomes a point of it first.

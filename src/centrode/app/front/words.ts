@@ -50,8 +50,8 @@ export const withUnit = (text: string, unit?: string | null): string => {
   return label ? `${text}${label === "°" ? "" : "\u00a0"}${label}` : text;
 };
 
-// A clause of the server's as a sentence; what begins with a symbol or a function keeps its letter.
-const FORMULA = /^\S*[\d_(=|]|^\S+ =|^\p{Script=Greek}/u;
+// A clause of the server's as a sentence; what begins with a symbol, a function, a path or a file keeps its letter.
+const FORMULA = /^\S*[\d_(=|]|^\S+ =|^\S+\.\S+:|^\p{Script=Greek}/u;
 export const sentence = (text: string | null | undefined): string => {
   const plain = (text ?? "").trim();
   return plain && (FORMULA.test(plain) ? plain[0]! : plain[0]!.toLocaleUpperCase()) + plain.slice(1) + (/[.!?…:]$/.test(plain) ? "" : ".");
