@@ -193,3 +193,18 @@ def test_a_field_takes_several_values_with_semicolons(ask) -> None:  # type: ign
     ]
     assert rows[1] - rows[2] and rows[2] - rows[1]
     assert rows[0] == rows[1] | rows[2]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "\n", "# nothing yet\n", "[frame.points]\nO = [0, 0]\n", "[frame.points]\n\n[links]\n"]
+)
+def test_a_text_that_nobody_has_begun_is_told_how(ask, text):  # type: ignore[no-untyped-def]
+    """A user who draws is asked for a link, not for a key."""
+    (problem,) = ask("read", text=text)["problems"]
+    assert problem["message"] == "there are no links" and problem["repair"].startswith("draw one")
+    assert ask("motion", text=text)["repair"] == problem["repair"]
+
+
+def test_a_text_that_is_too_long_has_a_repair(ask):  # type: ignore[no-untyped-def]
+    error = ask("read", text="#" * 300_001)["error"]
+    assert "300001" in error["message"] and error["repair"] == "shorten it"

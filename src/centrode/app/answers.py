@@ -142,7 +142,7 @@ class Workbench:
             raise InputError("", _("the message names no description"))
         if len(text) > TEXT_SIZE:
             what = _("the text has {size} characters, at most {most} are allowed")
-            raise InputError("", what.format(size=len(text), most=TEXT_SIZE))
+            raise InputError("", what.format(size=len(text), most=TEXT_SIZE), _("shorten it"))
         self._keep(text)
         return text
 

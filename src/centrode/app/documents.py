@@ -134,7 +134,7 @@ def read_document(text: str, folder: Path) -> Document:
 def _kept_document(text: str, folder: Path, _language: str) -> Document:
     if len(text) > TEXT_SIZE:
         what = _("the text has {size} characters, at most {most} are allowed")
-        problem = TextProblem(what.format(size=len(text), most=TEXT_SIZE), "", 1, 1, "")
+        problem = TextProblem(what.format(size=len(text), most=TEXT_SIZE), _("shorten it"), 1, 1, "")
         return Document(text, {}, None, None, None, (problem,))
     try:
         tables = toml_tables(text, "")
@@ -145,7 +145,9 @@ def _kept_document(text: str, folder: Path, _language: str) -> Document:
             cam: AnyCam = validated_tables(kind_of_cam(tables), tables, folder, bare_angles_of(tables))
             return Document(text, tables, None, cam, None, ())
         refuse_other_kind(tables, "linkage")
-        mechanism = validated_tables(Mechanism, tables, folder, bare_angles_of(tables))
+        # a text that nobody has begun lacks links, not a key
+        given = {"links": {}, **tables}
+        mechanism = validated_tables(Mechanism, given, folder, bare_angles_of(tables))
     except ValidationError as error:
         return Document(text, tables, None, None, None, tuple(_validation_problems(error, text)))
     except CentrodeError as error:

@@ -93,6 +93,9 @@ SCREEN_SENTENCES: Mapping[str, str] = {
     "use ct.reduce, which gives the inertia matrix of several": mark(
         "see centrode reduce, which gives the inertia matrix of several"
     ),
+    "describe at least one, such as [links.OA] with a length": mark(
+        "draw one, or write [links.OA] with a length into the text"
+    ),
     "give links masses, or add --driven": mark("give links masses"),
     "leave all drives free, or add --driven": mark("leave all drives free"),
     "list them with: centrode examples": mark("choose one of the templates under Open"),

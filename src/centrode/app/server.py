@@ -41,8 +41,8 @@ INTERRUPTED = mark("the computation was interrupted"), mark("try again")
 NOT_STARTED = (
     mark("the process that computes does not start: {reason}"),
     mark(
-        "install centrode with all that it needs and start the workbench again; another text, or a page that is loaded "
-        "again, tries once more"
+        "install what is missing and start the workbench again; another text, or a page that is loaded again, tries "
+        "once more"
     ),
 )
 NO_MESSAGE = mark("the server does not know this request"), ""
