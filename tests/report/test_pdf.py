@@ -20,7 +20,7 @@ from centrode.render.document.blocks import (
     SectionBlocks,
     TableBlock,
 )
-from centrode.report.figure_places import Layout, well_placed
+from centrode.report.figure_places import Layout, lonely_figures, well_placed
 from centrode.report.pdf_document import Source, document_files, pdf_document
 
 from .made import HOSTILE, report, svg
@@ -189,6 +189,23 @@ def test_figures_go_earlier_within_their_chapter_and_keep_their_order() -> None:
     texts.clear()
     assert well_placed(lines.replace("|", "\n"), hopeless, 50.0, 700.0) == lines.replace("|", "\n")
     assert len(texts) == 4  # before each paragraph of its chapter, no farther
+
+
+def test_a_page_that_becomes_too_empty_behind_a_figure_is_filled_next() -> None:
+    """Two chapters of a page of text and a figure; the first figure where it fits pushes the second off its page."""
+    lines = ["#heading(level: 1, a)", "#par", "#par", "#floating-picture(1)", "#chapter-end"]
+    lines += ["#heading(level: 1, b)", "#par", "#par", "#floating-picture(2)", "#chapter-end"]
+
+    def layout_of(text: str) -> Layout:
+        first, second = (text.split("\n").index(f"#floating-picture({figure})") for figure in (1, 2))
+        if first == 3:  # behind its text, at the top of the next page
+            return Layout(((1, 400.0), (2, 700.0)), ((2, 300.0), (2, 600.0)))
+        return Layout(((1, 700.0), (2, 400.0)), ((1, 300.0), ((3, 300.0), (2, 350.0))[second < 8]))
+
+    assert list(lonely_figures(lines, layout_of("\n".join(lines)), 50.0, 700.0)) == [0]
+    placed = well_placed("\n".join(lines), layout_of, 50.0, 700.0).split("\n")
+    assert [placed.index(f"#floating-picture({figure})") for figure in (1, 2)] == [2, 7]
+    assert list(lonely_figures(placed, layout_of("\n".join(placed)), 50.0, 700.0)) == []
 
 
 def test_a_number_and_its_unit_stay_on_one_line() -> None:

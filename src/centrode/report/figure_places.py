@@ -1,4 +1,4 @@
-"""Where figures stand on paper: none leaves a page less than half full before the end of its chapter.
+"""Where figures stand on paper: none leaves a page much less than two thirds full before the end of its chapter.
 
 Typst puts a figure at the top of the page where the text comes to it, or of the next one if too little of the page is
 left. It cannot move text that stands on the page already. So at the end of a chapter a figure that just found no room,
@@ -19,7 +19,7 @@ ENDS = ("#heading(level: 1,", "#element(level: 1,", "#appendix(", "#show", "#sen
 """How lines begin that no figure goes before, as it stays in its chapter."""
 STEPS = (1, 2, 3, 5, 8, 13, 21, 34)
 """Lines of the source by which figures go earlier, tried one after another."""
-HALF = 0.5
+LEAST_FULL = 0.6
 
 Place = tuple[int, float]
 """A page, from 1, and how far below its upper edge [points]."""
@@ -52,9 +52,10 @@ class Layout:
 
 
 def well_placed(text: str, layout_of: Callable[[str], Layout], top: float, height: float) -> str:
-    """The source of a document, with figures earlier whose pages would be less than half full.
+    """The source of a document, with figures earlier whose pages would be too empty.
 
-    A figure goes no earlier than it has to. Where that mends nothing it stays.
+    A figure goes no earlier than it has to. Where that mends nothing it stays. That another page becomes too empty
+    behind it is no reason: the figure of that one is tried next.
 
     Parameters
     ----------
@@ -67,7 +68,8 @@ def well_placed(text: str, layout_of: Callable[[str], Layout], top: float, heigh
     while left := [figure for figure in alone if figure not in refused]:
         for tried in _earlier(lines, left[0]):
             found = list(lonely_figures(tried, layout_of("\n".join(tried)), top, height))
-            if len(found) < len(alone):
+            later = all(figure > left[0] for figure in found if figure not in alone)
+            if len(found) < len(alone) or (len(found) == len(alone) and left[0] not in found and later):
                 lines, alone = tried, found
                 break
         else:
@@ -76,7 +78,7 @@ def well_placed(text: str, layout_of: Callable[[str], Layout], top: float, heigh
 
 
 def lonely_figures(lines: Sequence[str], layout: Layout, top: float, height: float) -> Iterator[int]:
-    """For each page less than half full that its chapter goes on behind: the figure that would fill it, from 0.
+    """For each page too empty that its chapter goes on behind: the figure that would fill it, from 0.
 
     These are pages at the end of a chapter, whose text has ended or ends there, and another page begins with a figure.
     """
@@ -94,7 +96,7 @@ def lonely_figures(lines: Sequence[str], layout: Layout, top: float, height: flo
                 filled[page] = max(low, filled.get(page, 0.0))
                 leading.setdefault(page, figure)
         for page, low in filled.items():
-            if low - top < HALF * height and page + 1 in leading:
+            if low - top < LEAST_FULL * height and page + 1 in leading:
                 # text of the page before goes behind its own figure, or that of the next page before its text
                 yield leading.get(page, leading[page + 1])
 
