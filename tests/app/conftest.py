@@ -1,4 +1,4 @@
-"""A workbench in the process of the test, and its server behind starlette's client."""
+"""A workbench in the process of the test, its server behind starlette's client, and one that browsers are shown."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from centrode.app.answers import Workbench
 from centrode.app.folders import WorkFolder
 from centrode.app.server import ServerSettings, server_application
 from centrode.app.workers import DirectRunner
+
+from .served import Served, served
 
 PORT = 8123
 ORIGIN = f"http://127.0.0.1:{PORT}"
@@ -37,3 +39,12 @@ def client(settings: ServerSettings) -> Iterator[Any]:
     application = server_application(settings, DirectRunner)
     with testing.TestClient(application, base_url=ORIGIN, headers={"Origin": ORIGIN}) as made:
         yield made
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Of the browsers of a module, in a folder of its own."""
+    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
+    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
+    with served(tmp_path_factory.mktemp("bench")) as one:
+        yield one

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from report.browser import browser, frames
+from report.browser import frames
 from report.test_mechanism_page import AXE, AXE_SUM
 
 from .bench import Bench, bench
-from .served import Served, served
+from .served import Served
 
 MECHANISM, CAM, SPHERE = "six-bar-press", "indexing-cam", "spherical-four-bar"
 WIDTHS = (400, 1000, 1920)
@@ -39,20 +38,6 @@ SMALL = """() => [...document.querySelectorAll("body *")].filter((one) => {
   return parseFloat(getComputedStyle(one).fontSize) < 11;
 }).map((one) => one.outerHTML.slice(0, 120))"""
 WIDE = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("bench")) as one:
-        yield one
 
 
 def serious_findings(one: Bench, where: str = "html", *rules: str) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import math
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ import pytest
 from centrode.app.documents import read_document
 from centrode.app.sketch import SketchParts
 from centrode.model.examples import example_text
-from report.browser import browser, frames
+from report.browser import frames
 
 from .bench import Bench, bench, opened
 from .served import Served, served
@@ -24,20 +23,6 @@ SIX_DIGITS = 1e-4
 """Curves say five digits of their greatest value."""
 GREY = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAAAAABX3VL4AAAADklEQVR4nGNoaGBoaAAABgYCASzBUNcAAAAASUVORK5CYII="
 """A picture of four points."""
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("bench")) as one:
-        yield one
 
 
 def places_of(one: Bench) -> dict[str, np.ndarray]:

@@ -3,35 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 import centrode as ct
 from centrode.model.gear_pairs import GEAR_PAIRS
-from report.browser import browser
 
 from .bench import bench
-from .served import Served, served
+from .served import Served
 
 LOOKS = """all => all.map(getComputedStyle).map(one => [one.stroke, one.strokeDasharray, one.strokeWidth])"""
 """Colour, dashes and width of curves."""
 PAIR = {"module": "3 mm", "teeth": [12, 24], "shifts": [0.6, 0.36]}
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("gears")) as one:
-        yield one
 
 
 def set_slider(page: Any, name: str, value: float) -> None:

@@ -3,33 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
-import pytest
-
-from report.browser import browser, frames
+from report.browser import frames
 
 from .bench import Bench, bench
-from .served import Served, served
+from .served import Served
 
 RELEASE, FIRST_IMPACT, IMPACTS = 0.351285407, 0.447518908, 9
 """Of the catapult [s], as its how-to says them; the arm's stop is at 90 degrees."""
 PIXEL = 1.5
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("bench")) as one:
-        yield one
 
 
 def open_panel(one: Bench, name: str, topic: str) -> None:

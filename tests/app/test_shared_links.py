@@ -12,17 +12,15 @@ import string
 import sys
 import zlib
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from centrode.app.words import WORDS
 from centrode.model.examples import example_text
-from report.browser import browser
 
 from .bench import bench
-from .served import served
+from .served import Served
 from .test_memory import GREATEST, memory
 
 LINKS = int(os.environ.get("CENTRODE_LINKS", "12"))
@@ -127,12 +125,12 @@ def greatest_page(session: Any) -> int:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read from /proc")
-def test_links_that_are_damaged_or_forged(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_links_that_are_damaged_or_forged(
+    running: Any, server: Served, capfd: pytest.CaptureFixture[str]
+) -> None:
     """No traceback, no hang, nothing above the bound, and a good link is read after all of them."""
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
     good = example_text("crank-rocker")
-    with browser() as running, served(tmp_path) as server, bench(running, server.address) as one:
+    with bench(running, server.address) as one:
         session = running.new_browser_cdp_session()
         assert server.process is not None
         greatest, refused = 0, 0

@@ -14,11 +14,10 @@ import pytest
 
 import centrode as ct
 from centrode.model.files import mechanism_from
-from report.browser import browser
 from report.test_mechanism_page import AXE
 
 from .bench import STORE
-from .served import Served, served
+from .served import Served
 from .test_accessible_bench import AUDIT, WIDE, WIDTHS
 from .test_shared_links import packed
 
@@ -26,20 +25,6 @@ TICKET = "0123456789abcdef" * 2
 POSES = [["0 mm", "0 mm", "0 deg"], ["30 mm", "10 mm", "20 deg"], ["50 mm", "40 mm", "50 deg"]]
 LOOP = [(60 * math.cos(turn), 25 * math.sin(turn)) for turn in np.linspace(0, 2 * np.pi, 41)]
 """What the hand draws [mm]."""
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("synthesis")) as one:
-        yield one
 
 
 @pytest.fixture
@@ -202,6 +187,7 @@ def test_what_is_wrong_is_said_and_a_search_is_stopped(page: Any) -> None:
 
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_everybody_can_use_it(running: Any, server: Served, language: str) -> None:
+    """Audited by day and at night at every width in English; other words change neither colours nor parts."""
     page = running.new_page()
     page.set_default_timeout(170_000)
     page.goto(f"http://127.0.0.1:{server.port}/synthesis?token={server.token}&language={language}")
@@ -214,12 +200,13 @@ def test_everybody_can_use_it(running: Any, server: Served, language: str) -> No
     for kind in ("motion", "path", "function", "strokes"):
         if kind != "motion":
             page.select_option("#kind", kind)
-        for scheme in ("light", "dark"):
+        for scheme in ("light", "dark") if language == "en" else ("light",):
             page.emulate_media(color_scheme=scheme)
             for wide in WIDTHS:
                 page.set_viewport_size({"width": wide, "height": 900})
                 assert page.evaluate(WIDE) == 0
-                assert page.evaluate(AUDIT, ["html", []]) == []
+                if language == "en" or wide == WIDTHS[0]:
+                    assert page.evaluate(AUDIT, ["html", []]) == []
     page.close()
 
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from report.browser import browser, frames
+from report.browser import frames
 
 from .bench import DRAWING, Bench, bench
-from .served import Served, served
+from .served import Served
 
 POWERS = """() => {
   const found = {units: 0, wrapped: 0, broken: []}, panel = document.querySelector("#panel");
@@ -54,20 +53,6 @@ CORNERS = """() => {
   return [ways.length, Math.max(...corners) * 180 / Math.PI];
 }"""
 """Pieces of the widest path of the drawing that are two pixels long and more, and its sharpest corner in degrees."""
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("starlette", reason="no starlette: pip install centrode[app]")
-    pytest.importorskip("uvicorn", reason="no uvicorn: pip install centrode[app]")
-    with served(tmp_path_factory.mktemp("bench")) as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,7 @@ from __future__ import annotations
 
 import gettext
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,20 +12,12 @@ from centrode.cli.translation import wished_language
 from centrode.errors import InputError
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
-CATALOGUES = Path(__file__).parents[2] / "tools" / "catalogues.py"
 
 
 @pytest.fixture(autouse=True)
 def english_again() -> Iterator[None]:
     yield
     locale.choose_language("en")
-
-
-def test_catalogues_are_complete_and_compiled() -> None:
-    done = subprocess.run(
-        [sys.executable, str(CATALOGUES), "check"], capture_output=True, encoding="utf-8", check=False
-    )
-    assert done.returncode == 0, done.stderr[-500:]
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from centrode.render.drawing.looks import SCREEN_PALETTE, area_look, letter_look
 from centrode.report.html.page import html_page
 from centrode.report.texts import blocks_of
 
-from .browser import browser, opened
+from .browser import opened
 
 NAMES = ("six-bar-press", "spherical-four-bar", "cam-from-curvature", "helical-gear-pair")
 LIGHT, DARK = "#ffffff", "#17181a"
@@ -47,12 +47,6 @@ def is_meant_faint(colour: str) -> bool:
         *(int(pair, 16) / 255 for pair in re.findall("..", colour[1:]))
     )
     return lightness > 0.65 if saturation < 0.05 else lightness >= 0.8
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

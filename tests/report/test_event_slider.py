@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import centrode as ct
 from centrode.report.html.page import html_page
 from centrode.views.motion_events import KINDS, held_parts, marked_events
 
-from .browser import browser, frames, opened
+from .browser import frames, opened
 
 NAME = "catapult"
 
@@ -22,12 +21,6 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("report") / "catapult.html"
     path.write_bytes(html_page(ct.report(ct.example(NAME), name=NAME)))
     return path
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
 
 
 def test_events_of_a_report_are_gone_to(running: Any, file: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,7 @@ from centrode.report.html.fonts import FONT
 from centrode.report.html.page import html_page
 from centrode.views.equations import sheet
 
-from .browser import Seen, browser, frames, opened, until
+from .browser import Seen, frames, opened, until
 from .made import HOSTILE, moving, report
 
 PLANE, SPHERE, WHEEL = "slider-between-cranks", "spherical-crank-rocker", "walking-wheel-four-legs"
@@ -34,12 +33,6 @@ WIDTHS = (1280, 820, 400)
 EMBEDDED = re.compile(r'data:font/woff;base64,([^"]+)"')
 MARKUP = "<img src=x onerror=alert(1)>"
 A4 = 643  # width of the text on A4 in a browser's pixels, 96 to an inch
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ from centrode.report.mechanism_page.handles import handles_of
 from centrode.report.mechanism_page.numbers_that_vary import joints_of, ranges_of
 from centrode.report.mechanism_page.page_file import mechanism_page
 
-from .browser import Seen, browser, frames, opened, until
+from .browser import Seen, frames, opened, until
 from .made import HOSTILE
 
 PLANE, SPHERE, LOCKED, BRANCHED = (
@@ -169,12 +169,6 @@ def test_the_command_writes_a_page_once(
 
 
 # In a browser.
-
-
-@pytest.fixture(scope="module")
-def running() -> Iterator[Any]:
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterator
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.synthesis import path_synthesis, start_candidates
-from centrode.synthesis.processes import HERE, processes
+from centrode.synthesis import path_synthesis, start_candidates, synthesise
+from centrode.synthesis.processes import HERE, Processes, processes
 
 PATH = [
     [np.cos(t), 0.5 * np.sin(t) + 0.1 * np.cos(2 * t)] for t in np.linspace(0, 2 * np.pi, 12, endpoint=False)
@@ -27,6 +29,21 @@ def few_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(path_synthesis, "closed_candidates", few)
 
 
+@pytest.fixture(scope="module")
+def two() -> Iterator[Processes]:
+    """Two processes that have imported what they need: the tests share them."""
+    with processes(2) as started:
+        yield started
+
+
+@pytest.fixture
+def shared(two: Processes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search for which two processes are asked has those of the tests."""
+    here = {1: HERE, 2: two}
+    monkeypatch.setattr(synthesise, "processes", lambda jobs: nullcontext(here[jobs]))
+
+
+@pytest.mark.usefixtures("shared")
 def test_two_processes_answer_as_one() -> None:
     shares: list[float] = []
     alone = ct.synthesise({"synthesis": WANTED})
@@ -38,6 +55,7 @@ def test_two_processes_answer_as_one() -> None:
     assert shares == sorted(shares) and shares[-1] == 1.0
 
 
+@pytest.mark.usefixtures("shared")
 def test_a_search_on_several_processes_is_stopped() -> None:
     shares: list[float] = []
     found = ct.synthesise(
@@ -49,13 +67,12 @@ def test_a_search_on_several_processes_is_stopped() -> None:
     assert not found.complete and found.answers
 
 
-def test_shares_that_are_left_out() -> None:
+def test_shares_that_are_left_out(two: Processes) -> None:
     """Once it is stopped, what has not begun is left out, here as in other processes."""
     assert dict(HERE.compute(doubled, [1, 2], lambda: False)) == {0: 2, 1: 4}
     assert dict(HERE.compute(doubled, [1, 2], lambda: True)) == {}
-    with processes(2) as two:
-        assert dict(two.compute(doubled, [1, 2, 3], lambda: False)) == {0: 2, 1: 4, 2: 6}
-        assert dict(two.compute(doubled, [1, 2, 3], lambda: True)) == {}
+    assert dict(two.compute(doubled, [1, 2, 3], lambda: False)) == {0: 2, 1: 4, 2: 6}
+    assert dict(two.compute(doubled, [1, 2, 3], lambda: True)) == {}
 
 
 def doubled(number: int, stop: object = None) -> int:
