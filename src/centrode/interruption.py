@@ -16,12 +16,22 @@ INTERRUPTED = 130
 """Exit code, as shells have it of a program that Ctrl-C ends."""
 
 
-def is_command_line(arguments: list[str]) -> bool:
-    """Whether Python runs the command of this package, or looks for the module that `python -m centrode` names."""
+def is_command_line(arguments: list[str], of_python: list[str]) -> bool:
+    """Whether Python runs the command of this package, or looks for the module that `python -m centrode` names.
+
+    Parameters
+    ----------
+    arguments : as a program gets them, `sys.argv`
+    of_python : those with which Python was started, `sys.orig_argv`
+    """
     if not arguments:
         return False
-    # "-m" stands there as long as a package is imported for a module of its own that is to be run
-    return arguments[0] == "-m" or os.path.splitext(os.path.basename(arguments[0]))[0] == "centrode"
+    if arguments[0] == "-m":
+        # it stands there as long as a package is imported for a module of its own that is to be run: of ours, or of
+        # another one, which handles Ctrl-C as it likes
+        module = of_python[-len(arguments)]
+        return module == "centrode" or (module.startswith("-") and module.endswith("mcentrode"))
+    return os.path.splitext(os.path.basename(arguments[0]))[0] == "centrode"
 
 
 def end_at_interruption() -> None:
@@ -43,5 +53,5 @@ def _end(_number: int, _frame: object) -> None:
     os._exit(INTERRUPTED)
 
 
-if is_command_line(sys.argv):
+if is_command_line(sys.argv, sys.orig_argv):
     end_at_interruption()

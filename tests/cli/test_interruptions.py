@@ -15,6 +15,7 @@ import pytest
 
 from centrode.files import drafts
 from centrode.files.locks import taken
+from centrode.interruption import is_command_line
 
 Centrode = Callable[..., Any]
 
@@ -114,6 +115,41 @@ def test_ctrl_c_while_modules_are_imported(folder: Path, module: str, said: byte
         cwd=folder, capture_output=True, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stdout, done.stderr) == (130, b"", said)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "of_python", "ours"),
+    [
+        (["/bin/centrode", "check"], ["python", "/bin/centrode", "check"], True),
+        (["-m", "check", "kite"], ["python", "-m", "centrode", "check", "kite"], True),
+        (["-m"], ["python", "-Bm", "centrode"], True),
+        (["-m", "check"], ["python", "-W", "error", "-mcentrode", "check"], True),
+        (["-m", "-m", "centrode"], ["python", "-m", "tool.run", "-m", "centrode"], False),
+        (["-m", "centrode"], ["python", "-mtool", "centrode"], False),
+        (["tool.py", "centrode"], ["python", "tool.py", "centrode"], False),
+        ([], [], False),
+    ],
+)
+def test_whose_command_line_it_is(arguments: list[str], of_python: list[str], ours: bool) -> None:
+    assert is_command_line(arguments, of_python) == ours
+
+
+def test_ctrl_c_of_another_program_is_its_own(folder: Path) -> None:
+    """A package that imports this one, while Python looks for a module of it, is interrupted as ever."""
+    (folder / "own").mkdir()
+    (folder / "own" / "__init__.py").write_text(
+        "import signal\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "import centrode\n"
+        "print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n"
+    )
+    (folder / "own" / "run.py").touch()
+    done = subprocess.run(
+        [sys.executable, "-m", "own.run", "-m", "centrode"],
+        cwd=folder, capture_output=True, check=False,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
+    )  # fmt: skip
+    assert (done.stdout.split(), done.stderr) == ([b"True"], b"")
 
 
 REPORT = """

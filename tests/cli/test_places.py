@@ -47,6 +47,10 @@ def test_a_name_without_its_ending_and_a_file_in_place_of_a_command(
     alone = centrode("press.toml")
     assert alone.code == 2
     assert alone.err.endswith("Error: a command goes before the file: centrode check press.toml\n")
+    # longer than a name of a file may be, as a text that was pasted
+    pasted = centrode("press" * 1000)
+    assert pasted.code == 2
+    assert "No such command 'presspress" in pasted.err
 
 
 def test_a_folder_instead_of_a_file(refused: Refused, folder: Path) -> None:

@@ -15,7 +15,6 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -101,7 +100,7 @@ class ReadingOrder(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The command that is named; who names a file in its place is told where the command goes."""
-        if args[0] not in self.commands and (args[0].endswith(".toml") or Path(args[0]).is_file()):
+        if args[0] not in self.commands and (args[0].endswith(".toml") or os.path.isfile(args[0])):
             ctx.fail(_("a command goes before the file: centrode check {file}").format(file=args[0]))
         return super().resolve_command(ctx, args)
 
