@@ -39,8 +39,6 @@ STARTS = 3
 """Processes that are started for one message; after that it is said that none starts."""
 READY, FAILED = b"r", b"f"
 """The first word of a process: it answers from now on, or it cannot, with the reason behind."""
-
-
 REASON = 500
 """Letters of the reason for which a process does not start."""
 
@@ -137,7 +135,7 @@ class ProcessRunner:
     _connection: Connection | None = None
     _is_ready: bool = False
     _ended: bool = False
-    _refused: tuple[str, StartFailure] | None = None
+    _refused: tuple[str, str] | None = None
     _guard: threading.Lock = field(default_factory=threading.Lock)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(max_workers=1))
@@ -152,12 +150,12 @@ class ProcessRunner:
                 raise EOFError
             subject = _subject(message)
             if self._refused is not None and subject and self._refused[0] == subject:
-                raise self._refused[1]
+                raise StartFailure(self._refused[1])
             self._refused = None
             try:
                 return await self._answer_by_another(json.dumps(message).encode(), limit)
             except StartFailure as failure:
-                self._refused = subject, failure
+                self._refused = subject, failure.reason
                 raise
 
     async def _answer_by_another(self, content: bytes, limit: float) -> Reply:
