@@ -347,6 +347,25 @@ def test_a_mirror_image_of_a_line_with_a_place_of_its_own():
     assert once.document.tables["guides"] != read_document(text, HERE).tables["guides"]
 
 
+@pytest.mark.parametrize(
+    "name",
+    [
+        "four-bar-and-slider",  # places that follow from initial angles
+        "oscillating-cylinder",  # a slot in a link whose axes stay as they are
+        "whitworth-quick-return",
+        "inverted-slider-crank",  # and in one whose axes are mirrored
+        "catapult",  # a slot in a link of one point
+    ],
+)
+def test_everything_stands_at_its_mirror_image(name):
+    text = ct.mechanism_text(ct.example(name))
+    before = SketchParts(read_document(text, HERE))
+    image = patch_of(text, {"do": "mirror", "objects": [*before.points], "axis": [[0.1, 0], [0.1, 1]]})
+    stand = image.document.require_prepared().assembled.positions.points
+    for point, (x, y) in before.places.items():
+        assert tuple(map(float, stand[point])) == pytest.approx((0.2 - x, y), abs=3e-4 * before.size)
+
+
 REFUSALS = [
     ({"do": "add_link", "at": [0, 0], "to": [0, 0]}, "the link is too short"),
     ({"do": "add_link", "at": [0, 0], "to": [1, 1], "from_point": "A", "to_point": "B"}, "both belong to AB"),

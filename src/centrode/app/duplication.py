@@ -8,9 +8,18 @@ from operator import mul
 from typing import Any
 
 from centrode.app.drawing_operations import written_direction
-from centrode.app.edit_drags import reshaped_by, written_place
+from centrode.app.edit_drags import local_place, new_pose, reshaped_by, written_place
 from centrode.app.patches import Operation, Patch
-from centrode.app.sketch import SketchParts, Vector, coordinates, direction_angle, guide_name, on_unit_sphere
+from centrode.app.sketch import (
+    Pose,
+    SketchParts,
+    Vector,
+    coordinates,
+    direction_angle,
+    guide_name,
+    on_unit_sphere,
+    shown_place,
+)
 from centrode.app.state_rows import set_ground
 from centrode.errors import InputError
 from centrode.locale import _
@@ -22,6 +31,8 @@ BESIDE = math.pi / 12
 """Angle [rad] by which a copy stands beside what it is of, on the sphere."""
 ON_AXIS = 1e-9
 """Angle [rad] within which a line is its own mirror image."""
+FRAME_POSE: Pose = ((0.0, 0.0), 0.0)
+"""Axes of the frame."""
 POLAR = 1e-6
 """Distance [rad] from a pole within which no direction is east."""
 
@@ -180,13 +191,9 @@ def mirror(patch: Patch, operation: Operation) -> None:
         normal = _circle_of_mirror(patch, operation.get("axis"), known)
         moved = {point: reflect_in_plane(sketch.places[point], normal) for point in points}
     else:
-        (x, y), direction = _axis(patch, operation.get("axis"), known)
-        cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
-        moved = {}
-        for point in points:
-            u, v = sketch.places[point][0] - x, sketch.places[point][1] - y
-            moved[point] = (x + u * cosine + v * sine, y + u * sine - v * cosine)
-        guides = dict(_mirrored_guides(patch, moved, (x, y), direction))
+        axis, direction = _axis(patch, operation.get("axis"), known)
+        moved = {point: _reflect_in_line(sketch.places[point], axis, direction) for point in points}
+        guides = dict(_mirrored_guides(patch, moved, axis, direction))
     patch.write(*reshaped_by(sketch, moved, patch.folder, also=guides).assignments)
 
 
@@ -199,22 +206,22 @@ def _mirrored_guides(
         point, on = str(guide.get("point")), str(guide.get("on", FRAME))
         if point not in moved or not (on == FRAME or set(sketch.links.get(on, (FRAME,))) <= set(moved)):
             continue
-        # the axes of a link are mirrored with it: in them the line is mirrored in the first one
-        foot, turn = (axis, 2.0 * direction) if on == FRAME else ((0.0, 0.0), 0.0)
+        before: Pose | None = FRAME_POSE
+        after: Pose | None = FRAME_POSE
+        if on != FRAME:
+            # the axes of a link may be mirrored with it, or stay as they are
+            before, after = sketch.poses.get(on), new_pose(sketch, on, moved)
         angle, through = direction_angle(guide.get("direction")), coordinates(guide.get("through"))
-        if angle is None:
+        if angle is None or before is None or after is None:
             continue
+        turn = 2.0 * direction - before[1] - after[1]
         if abs(math.remainder(turn - 2.0 * angle, math.pi)) > ON_AXIS:
             written = written_direction(patch, turn - angle)
             yield ("guides", k, "direction"), written
             angle = direction_angle(written) or 0.0
         if through is None:
             continue
-        u, v = through[0] - foot[0], through[1] - foot[1]
-        image = (
-            foot[0] + u * math.cos(turn) + v * math.sin(turn),
-            foot[1] + u * math.sin(turn) - v * math.cos(turn),
-        )
+        image = local_place(after, _reflect_in_line(shown_place(before, through), axis, direction))
         yield from written_place(sketch, ("guides", k, "through"), image)
         for drive in sketch.drives_of(str(guide.get("name", point))) if on == FRAME else ():
             slide = math.cos(angle) * (moved[point][0] - image[0]) + math.sin(angle) * (
@@ -222,6 +229,13 @@ def _mirrored_guides(
             )
             if sketch.drives[drive].get("start") is not None:
                 yield ("drives", drive, "start"), patch.length(slide, sketch.drives[drive]["start"])
+
+
+def _reflect_in_line(place: Vector, axis: Vector, direction: float) -> tuple[float, float]:
+    """The mirror image of a place in a line through another one, at an angle [rad]."""
+    cosine, sine = math.cos(2.0 * direction), math.sin(2.0 * direction)
+    u, v = place[0] - axis[0], place[1] - axis[1]
+    return axis[0] + u * cosine + v * sine, axis[1] + u * sine - v * cosine
 
 
 def _circle_of_mirror(patch: Patch, axis: Any, places: Sequence[Vector]) -> Vector:

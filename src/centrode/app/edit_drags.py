@@ -453,10 +453,7 @@ def reshaping_assignments(
             yield from pair(("points", point), places[point])
         frame = sketch.tables.get("frame", {}).get("points", {})
         if isinstance(frame, Mapping) and point in frame:
-            old = frame[point]
-            within: Place = ("frame", "points", point)
-            within = (*within, "placed") if isinstance(old, Mapping) else within
-            yield from pair(within, places[point])
+            yield from pair(("frame", "points", point), places[point])
     if sketch.on_sphere:
         yield from sphere_assignments(sketch, moved, assignment, pair)
         return
@@ -496,6 +493,8 @@ def written_place(
 ) -> Iterator[Assignment]:
     """Coordinates at a place of the text as the file writes them: on the sphere longitude and latitude."""
     old = value_at_place(sketch.tables, place)
+    if isinstance(old, Mapping):  # the place that follows from initial angles is kept with its key
+        place, old = (*place, "placed"), old.get("placed")
     kind, numbers = ("angle" if sketch.on_sphere else "length"), sketch.numbers_of(value)
     if isinstance(old, list) and len(old) == 2:
         for axis, number_at_axis in enumerate(numbers):
@@ -581,12 +580,22 @@ def pose_between(places: Mapping[str, Vector], points: tuple[str, ...]) -> Pose 
 
 
 def new_pose(sketch: SketchParts, name: str, moved: Mapping[str, Vector]) -> Pose | None:
-    """Axes of a link with own coordinates after a drag: they go on lying along the two points along which they lay."""
+    """Axes of a link after a drag: from its first point to the second.
+
+    Where it has coordinates of its own they go on lying along the two points along which they lay.
+    """
+    places = {**sketch.places, **moved}
+    if not isinstance(sketch.tables["links"][name].get("points"), Mapping):
+        return pose_between(places, sketch.links[name])
     if name not in sketch.poses:
         return None
     origin, angle = sketch.poses[name]
     local = sketch.local(name)
-    places = {**sketch.places, **moved}
+    if len(local) == 1:  # the link goes with its point
+        (place,) = local.values()
+        x, y = rotate_vector((place[0], place[1]), angle)
+        (there,) = (places[point] for point in local)
+        return (there[0] - x, there[1] - y), angle
     at_origin = next((point for point, place in local.items() if place == (0.0, 0.0)), None)
     along = [point for point, place in local.items() if place[0] > 0.0 and place[1] == 0.0]
     joints = [one for one in along if len(sketch.owners(one)) > 1 or one in sketch.frame_points]

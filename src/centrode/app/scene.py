@@ -22,12 +22,12 @@ from centrode.app.sketch import (
     load_name,
     number,
     on_unit_sphere,
+    shown_place,
 )
 from centrode.app.state_rows import rows_of
 from centrode.locale import _
 from centrode.model.description import coordinate_of_drive
 from centrode.model.gears import Gear
-from centrode.model.placement import rotate_vector
 from centrode.model.reading import FRAME
 
 SIGNS = {False: ("x", "y"), True: ("λ", "β")}
@@ -176,16 +176,14 @@ def _track(sketch: SketchParts, wheel: Mapping[str, Any], along: Mapping[str, An
     place = sketch.places.get(given) if isinstance(given, str) else None
     if pose is None or (local is None and place is None):
         return None
-    (x, y), angle = pose[0][:2], pose[1]
     if place is None and local is not None:
-        u, v = rotate_vector(local, angle)
-        place = (x + u, y + v)
+        place = shown_place(pose, local)
     direction = direction_angle(along.get("direction"))
     return {
         "on": on,
         "at": list(place or ()),
         "radius": number(along.get("radius"), "length"),
-        "direction": None if direction is None else direction + angle,
+        "direction": None if direction is None else direction + pose[1],
     }
 
 

@@ -193,9 +193,8 @@ class SketchParts:
         x, y = rotate_vector((local[known][0], local[known][1]), angle)
         origin = (places[known][0] - x, places[known][1] - y)
         poses[name] = origin, angle
-        for point, (u, v) in local.items():
-            dx, dy = rotate_vector((u, v), angle)
-            places.setdefault(point, (origin[0] + dx, origin[1] + dy))
+        for point, place in local.items():
+            places.setdefault(point, shown_place(poses[name], place))
         return True
 
     def _pose_between(self, name: str, places: Mapping[str, Vector], poses: dict[str, Pose]) -> None:
@@ -349,6 +348,13 @@ def display_units(tables: Tables) -> dict[str, dict[str, Any]]:
         unit = unit if unit in known else usual
         units[kind] = {"unit": unit, "factor": known[unit]}
     return units
+
+
+def shown_place(pose: Pose, local: Vector) -> tuple[float, float]:
+    """Where a place in the axes of a pose is in those of the frame."""
+    (x, y), angle = pose[0][:2], pose[1]
+    u, v = rotate_vector((local[0], local[1]), angle)
+    return x + u, y + v
 
 
 def number(value: object, kind: str) -> float | None:
