@@ -121,6 +121,13 @@ def test_poses_by_the_keyboard_alone(page: Any) -> None:
 def test_a_function_and_strokes(page: Any) -> None:
     page.select_option("#kind", "function")
     assert not page.is_visible("#closed") and page.is_visible("#formula")
+    assert page.input_value("#transmission") == "30" and page.input_value("#length_ratio") == "6"
+    page.click("#search")
+    page.wait_for_selector("#answers .card")
+    said = page.inner_text("#answers li:first-child .card")
+    assert float(said.split("least transmission angle: ")[1].split("\u00a0")[0].split()[0].rstrip("°")) >= 30
+    page.fill("#transmission", "")
+    page.fill("#length_ratio", "")
     page.click("#search")
     page.wait_for_selector("#answers .card")
     said = page.inner_text("#answers li:first-child .card")

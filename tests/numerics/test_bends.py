@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.bends import BendFunctions, Bent
+from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.jets import Jet, JetFunctions
 from mechanisms import EPS
 
@@ -34,7 +34,7 @@ FORMULAS: dict[str, Callable[[Any, Any], Any]] = {
 def bent(formula: Callable[[Any, Any], Any], half: float) -> tuple[Bent, Any]:
     """The number over cells, and its exact second derivatives inside them."""
     with np.errstate(all="ignore"):
-        found = formula(BENDS, BENDS.variable(CENTRES, half))
+        found = formula(BENDS, BENDS.variable(CENTRES, Cells(half, ARRAYS)))
         exact = formula(JETS, Jet.variable(CENTRES[:, None] + half * INSIDE, 2))
     return found, exact
 
@@ -63,14 +63,14 @@ def test_value_and_slope_have_the_bits_of_jets(name: str) -> None:
 
 
 def test_nothing_is_known_where_a_divisor_or_a_radicand_may_be_zero() -> None:
-    x = BENDS.variable(np.array([0.0, 0.04, 0.2]), 0.05)
+    x = BENDS.variable(np.array([0.0, 0.04, 0.2]), Cells(0.05, ARRAYS))
     with np.errstate(all="ignore"):
         for number in (1.0 / x, BENDS.sqrt(x)):
             np.testing.assert_array_equal(np.isfinite(number.bend), [False, False, True])
 
 
 def test_what_is_not_bounded_makes_all_that_follows_unbounded() -> None:
-    x = BENDS.variable(CENTRES + 5.0, 0.01)
+    x = BENDS.variable(CENTRES + 5.0, Cells(0.01, ARRAYS))
     plain = Jet.variable(CENTRES + 5.0, 1)
     for number in (x + plain, plain + x, x - plain, plain - x, x * plain, plain * x, x / plain, plain / x):
         assert type(number) is Jet

@@ -87,3 +87,30 @@ def test_touching_circles_are_zero_within_the_bound(r: float, s: float, turn: fl
     assert abs(found[0].value) <= SAFETY * found[0].bound
     # (r + s)^2 - l^2 is known to a dozen roundings of (r + s)^2, times 4 r s
     assert found[0].bound <= 32 * UNIT_ROUNDOFF * (r + s) ** 2 * 4 * r * s + 1e-30
+
+
+def test_errors_gathered_along_turning_directions_add_up() -> None:
+    """A vector turned 200 times by half a right angle: boxes about it would grow by the root of two each time."""
+    cosine, sine = (Rounded.of(np.float64(f(0.25 * np.pi))) for f in (np.cos, np.sin))
+    x, y = Rounded.of(np.float64(1.2)), Rounded.of(np.float64(0.7))
+    steps = 200
+    for k in range(1, steps + 1):
+        x, y = x * cosine - y * sine, x * sine + y * cosine
+        turn = 0.25 * np.pi * k
+        along = np.cos(turn), np.sin(turn)
+        x, y = ROUNDED.gather_errors((x, y), (along, (-along[1], along[0])), None)
+    with mp.workdps(60):
+        c, s = mp.mpf(float(cosine.value)), mp.mpf(float(sine.value))
+        exact = mp.mpc(1.2, 0.7) * mp.mpc(c, s) ** steps
+        assert abs(mp.mpf(float(x.value)) - exact.real) <= float(x.bound)
+        assert abs(mp.mpf(float(y.value)) - exact.imag) <= float(y.bound)
+    # each turn rounds four products and two sums of numbers below 2, and takes cosine and sine for data
+    assert max(x.bound, y.bound) <= steps * 16 * UNIT_ROUNDOFF * 2.0
+
+
+def test_an_error_that_numbers_share_cancels() -> None:
+    x, y = ROUNDED.gather_errors((Rounded(3.0, 1e-3), Rounded(4.0, 0.0)), ((0.6, 0.8), (-0.8, 0.6)), None)
+    # what moves the vector along itself leaves its direction: 4 dx = 3 dy
+    across = x * 4.0 - y * 3.0
+    assert across.bound == pytest.approx(5.0 * 0.8 * 1e-3, rel=1e-9)
+    assert (x - x).bound <= 4.0 * UNIT_ROUNDOFF * x.value

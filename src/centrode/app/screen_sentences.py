@@ -10,6 +10,17 @@ from collections.abc import Mapping
 from centrode.locale import mark
 
 SCREEN_SENTENCES: Mapping[str, str] = {
+    # files
+    "save it as UTF-8 (Notepad: Save as, Encoding); in PowerShell write files by --out, not by >": mark(
+        "save it as UTF-8 (Notepad: Save as, Encoding)"
+    ),
+    "begin with a built-in one: centrode examples {name} --out mine.toml": mark(
+        "begin with a built-in one: Open lists them, {name} for example"
+    ),
+    "write each link below a heading, [links.AB], or begin with a built-in mechanism: centrode examples "
+    "crank-rocker --out mine.toml": mark(
+        "write each link below a heading, [links.AB], or begin with a built-in mechanism: Open lists them"
+    ),
     # fields of panels
     'name those that matter, as in --pair "{first},frame"': mark(
         'name those that matter in the field of pairs, as "{first},frame"'

@@ -212,13 +212,19 @@ def bound_acceleration(
     known, linear, squared = sums
     # B determinant = known + linear B + squared B^2
     least = least_bound(known, determinant - linear, squared, cells.m)
-    # what a fixed link holds stays held: bounds of lengths alone would grow from group to group
-    held = next(
-        filter(None, (locus.hold(pull, least, cells) for locus, pull in zip(loci, pulls, strict=True))),
-        (None, None),
-    )
-    vector = VectorBend(least, *held)
+    vector = _held_bend(loci, pulls, least, cells) if cells.holds else None
     return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells, vector) for axis in place)
+
+
+def _held_bend(
+    loci: Sequence[MovingLocus], pulls: Sequence[Pull], acceleration: Number, cells: Cells
+) -> VectorBend:
+    """What is known of a place's acceleration: what a fixed link holds stays held.
+
+    Bounds of lengths alone would grow from group to group.
+    """
+    held = (locus.hold(pull, acceleration, cells) for locus, pull in zip(loci, pulls, strict=True))
+    return VectorBend(acceleration, *next(filter(None, held), (None, None)))
 
 
 def shared_bend(place: Place) -> VectorBend | None:

@@ -25,7 +25,6 @@ from centrode.geometry.plane import (
 )
 from centrode.geometry.space import Curve, Root
 from centrode.geometry.space import Pose as AnyPose
-from centrode.numerics.rounding_bounds import Rounded, RoundedFunctions
 from centrode.structure.constraints import FRAME, GearRatio, NoSlip, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
@@ -398,8 +397,8 @@ def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Roo
     pivot, target = at.points[group.pivot], at.points[group.target]
     local, curve = numbers.local[group.link][group.pivot], aim_curve(group, numbers)
     pose = numbers.space.aim(m, local, pivot, curve, target, root)
-    if isinstance(m, RoundedFunctions) and isinstance(pose, PlanePose):
-        cosine, sine = (plain_number(x) for x in pose.rotor)
+    if _gathers_errors(m) and isinstance(pose, PlanePose):
+        cosine, sine = m.without_bounds(pose.rotor)
         rotor = m.gather_errors(pose.rotor, ((cosine, sine), (-sine, cosine)), group)
         pose = pose_with_point(local, pivot, (rotor[0], rotor[1]))
     at.poses[group.link] = pose
@@ -442,7 +441,7 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices
     arms = _arms(group, numbers, rotor)
     one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
     vector = numbers.space.meet(one, other, choices.root, choices.divisor)
-    if isinstance(m, RoundedFunctions):
+    if _gathers_errors(m):
         vector = _gather_errors(group, m, numbers, (one, other), vector)
     choices.take_meeting(one, other, vector)
     if group.carriage is not None and rotor is not None:
@@ -454,9 +453,12 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices
         _two_points(rod.link, rod.centre, rod.point, m, numbers, at)
 
 
-def _gather_errors(
-    group: Meet, m: RoundedFunctions, numbers: Dimensions, loci: tuple[Any, Any], vector: Any
-) -> Any:
+def _gathers_errors(m: Namespace) -> bool:
+    """Whether numbers of this algebra carry bounds whose directions are kept (`numerics.rounding_bounds`)."""
+    return getattr(m, "gathers", False)
+
+
+def _gather_errors(group: Meet, m: Namespace, numbers: Dimensions, loci: tuple[Any, Any], vector: Any) -> Any:
     """A group's vector with its errors square to one of its loci and along it.
 
     A point on the circle of a link with a fixed pivot is exact across and carries what the linkage before it has lost
@@ -464,27 +466,10 @@ def _gather_errors(
     would multiply them.
     """
     # the locus that feels less of what was before
-    locus = min(loci, key=lambda each: len({source for x in _numbers_of(each) for source in x.rates}))
-    plain = type(locus)(*(_plain_numbers(part) for part in locus))
-    place = _plain_numbers(vector)
-    return m.gather_errors(vector, numbers.space.directions_at(m.base, plain, place), group)
-
-
-def _numbers_of(part: Any) -> list[Rounded]:
-    """The numbers of a locus."""
-    if isinstance(part, tuple):
-        return [number for entry in part for number in _numbers_of(entry)]
-    return [Rounded.of(part)]
-
-
-def _plain_numbers(part: Any) -> Any:
-    """A vector or a number without bounds."""
-    return tuple(map(_plain_numbers, part)) if isinstance(part, tuple) else plain_number(part)
-
-
-def plain_number(number: Number) -> Number:
-    """The value of a number with bounds."""
-    return number.value if isinstance(number, Rounded) else number
+    locus = min(loci, key=lambda each: len(m.sources_of(each)))
+    plain = type(locus)(*m.without_bounds(locus))
+    directions = numbers.space.directions_at(m.base, plain, m.without_bounds(vector))
+    return m.gather_errors(vector, directions, group)
 
 
 def _locus(

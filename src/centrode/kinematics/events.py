@@ -42,6 +42,7 @@ from centrode.kinematics.plan_evaluation import (
     RadicandZero,
     ReachedRadicand,
     count_turns,
+    is_long_row,
 )
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.numerics.arrays import ARRAYS, of_shape
@@ -80,11 +81,11 @@ def half_widths(mesh: Array) -> Array | float:
     return np.asarray(0.5 * np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps)))
 
 
-def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]:
+def bent_drives(path: Path, at: Array, cells: Cells) -> dict[str, Number]:
     """Values of all drives over cells about parameters; of laws of time the second derivative is looked at."""
     if not path.by_time:
-        return path.drive_values(BENDS, BENDS.variable(at, half))
-    cells = Cells(half, ARRAYS)
+        return path.drive_values(BENDS, BENDS.variable(at, cells))
+    half = cells.half
     # laws are any formulas: their second derivative is looked at in the middle and at the ends of each cell
     looks = [Path.drive_values(path, JETS, Jet.variable(at + shift * half, 2)) for shift in (0.0, -1.0, 1.0)]
     values: dict[str, Number] = {}
@@ -105,7 +106,8 @@ def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]
 
 def bent_frame(kinematics: Kinematics, at: Array, half: Array | float) -> Positions:
     """Positions before the first group of the plan, as numbers with bounded bends over cells about parameters."""
-    return Positions.of_frame(kinematics.numbers, bent_drives(kinematics.path, at, half), BENDS)
+    cells = Cells(half, ARRAYS, holds=is_long_row(kinematics.structure))
+    return Positions.of_frame(kinematics.numbers, bent_drives(kinematics.path, at, cells), BENDS)
 
 
 class Bending(Rough):

@@ -48,10 +48,15 @@ def times(a: Number, b: Number) -> Number:
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells by half their width, over a namespace with `abs`, `sqrt`, `less` and `where`."""
+    """Cells by half their width, over a namespace with `abs`, `sqrt`, `less` and `where`.
+
+    `holds` keeps the direction in which a fixed link holds a point: each group takes more operations, and bounds do not
+    grow from group to group.
+    """
 
     half: Number
     m: Namespace
+    holds: bool = False
 
     @cached_property
     def sagitta(self) -> Number:
@@ -222,9 +227,9 @@ class BendFunctions:
         self.base = base
         self.jets = JetFunctions(base)
 
-    def variable(self, value: Number, half: Number) -> Bent:
-        """The variable itself in cells of a half width about values."""
-        return Bent(value, 1.0, 0.0, Cells(half, self.base))
+    def variable(self, value: Number, cells: Cells) -> Bent:
+        """The variable itself in cells about values."""
+        return Bent(value, 1.0, 0.0, cells)
 
     def sqrt(self, x: Number) -> Number:
         """Root s: s'' = (x''/2 - s'^2) / s, with s' = x' / 2s."""

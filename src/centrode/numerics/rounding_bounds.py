@@ -160,10 +160,15 @@ def _sum_rates(
 
 
 class RoundedFunctions:
-    """Namespace `m` for bounded numbers over the numbers of another namespace: arrays, or expressions."""
+    """Namespace `m` for bounded numbers over the numbers of another namespace: arrays, or expressions.
 
-    def __init__(self, base: Number = ARRAYS) -> None:
+    With `gathers` the errors of each group of a linkage are gathered along directions; without, they stay boxes, which
+    takes fewer operations and does as well where few groups follow each other.
+    """
+
+    def __init__(self, base: Number = ARRAYS, gathers: bool = True) -> None:
         self.base = base
+        self.gathers = gathers
 
     def sin(self, x: Number) -> Rounded:
         x, base = Rounded.of(x), self.base
@@ -233,6 +238,18 @@ class RoundedFunctions:
         )
         rest = (abs(x.value) * y.rest + abs(y.value) * x.rest) / squared + last
         return Rounded(value, box, rates, rest)
+
+    def without_bounds(self, part: Any) -> Any:
+        """The value of a number, or of each number of a vector or a curve, as tuples."""
+        if isinstance(part, tuple):
+            return tuple(map(self.without_bounds, part))
+        return part.value if isinstance(part, Rounded) else part
+
+    def sources_of(self, part: Any) -> set[ErrorSource]:
+        """The sources of error that a number, or the numbers of a vector or a curve, share with others."""
+        if isinstance(part, tuple):
+            return set().union(*map(self.sources_of, part))
+        return set(part.rates) if isinstance(part, Rounded) else set()
 
     def gather_errors(
         self, vector: Sequence[Number], directions: Sequence[Sequence[Number]], owner: object

@@ -40,7 +40,7 @@ from centrode.kinematics.machine_code.variables import (
 )
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.path import Path, SampleGrid
-from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, layout_of
+from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics, is_long_row, layout_of
 from centrode.kinematics.preparation import Ready
 from centrode.kinematics.samples import ORDERS
 from centrode.kinematics.solve import Solved
@@ -61,6 +61,7 @@ Nodes: TypeAlias = npt.NDArray[Any]
 m = EXPRESSIONS
 
 NODE_BENDS = BendFunctions(EXPRESSIONS)
+NODE_BOXES = RoundedFunctions(EXPRESSIONS, gathers=False)
 NODE_ROUNDED = RoundedFunctions(EXPRESSIONS)
 HALF = "half"
 RADICAND, DIVISOR = "radicand", "divisor"
@@ -396,7 +397,8 @@ def _cells(
     kinematics: Kinematics, guards: tuple[tuple[str, int], ...]
 ) -> dict[tuple[str, int], tuple[Node, Node, Node]]:
     """Value and slope of each guard in the middle of a cell, and what bounds its second derivative there."""
-    cells, policy = Cells(variable(HALF), EXPRESSIONS), _TracingPolicy(NODE_BENDS)
+    cells = Cells(variable(HALF), EXPRESSIONS, holds=is_long_row(kinematics.structure))
+    policy = _TracingPolicy(NODE_BENDS)
     at = Positions.of_frame(kinematics.numbers, _drive_bends(kinematics.path, cells), NODE_BENDS)
     kinematics.advance(at, range(len(kinematics.structure.groups)), NODE_BENDS, policy)
     found: dict[tuple[str, int], tuple[Node, Node, Node]] = {}
@@ -410,7 +412,7 @@ def _drive_bends(path: Path, cells: Cells) -> dict[str, Number]:
     """Values of the drives over a cell, as `events.bent_drives` has them of arrays."""
     place = variable(PARAMETER)
     if not path.by_time:
-        return path.drive_values(NODE_BENDS, NODE_BENDS.variable(place, cells.half))
+        return path.drive_values(NODE_BENDS, NODE_BENDS.variable(place, cells))
     # laws are any formulas: their second derivative is looked at in the middle and at the ends of each cell
     looks = [
         path.drive_values(NODE_JETS, Jet.variable(place + shift * cells.half, 2))
@@ -454,7 +456,8 @@ def _bounds(
     kinematics: Kinematics, guards: tuple[tuple[str, int], ...]
 ) -> dict[tuple[str, int], tuple[Node, Node]]:
     """Value of each guard at a place with the bound of its rounding error."""
-    policy = _TracingPolicy(NODE_ROUNDED)
-    kinematics.positions(NODE_ROUNDED, Rounded.of(variable(PARAMETER)), policy)
+    bounded = NODE_ROUNDED if is_long_row(kinematics.structure) else NODE_BOXES
+    policy = _TracingPolicy(bounded)
+    kinematics.positions(bounded, Rounded.of(variable(PARAMETER)), policy)
     rounded = {guard: Rounded.of(number) for guard, number in _of_guards(policy, guards).items()}
     return {guard: (as_node(x.value), as_node(x.bound)) for guard, x in rounded.items()}

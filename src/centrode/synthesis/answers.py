@@ -26,6 +26,7 @@ from centrode.synthesis.four_bars import (
     ROCKER,
     Array,
     Complex,
+    cosines_of_transmission,
     crank_margins,
     least_transmission,
 )
@@ -220,7 +221,7 @@ def four_bar_answer(
         float(np.sqrt(np.mean(errors**2))),
         float(np.max(np.abs(errors))),
         float((errors**2).sum()),
-        transmission_of(linkage, side, crank, turns),
+        transmission_of(linkage, crank, turns),
         size,
         defects,
         curve,
@@ -232,16 +233,16 @@ def four_bar_answer(
     )
 
 
-def transmission_of(linkage: Array, side: float, crank: Array, turns: bool) -> float:
+def transmission_of(linkage: Array, crank: Array, turns: bool) -> float:
     """Least transmission angle [rad]: over a full turn, else over the way from the first target to the last."""
     if turns:
         return float(least_transmission(linkage[None])[0])
-    angles = np.linspace(crank.min(), crank.max(), CHECKED_PLACES)
-    fixed, other = complex(linkage[OX], linkage[OY]), complex(linkage[DX], linkage[DY])
-    distance = np.abs(fixed + linkage[CRANK] * np.exp(1j * angles) - other)
-    b, c = linkage[COUPLER], linkage[ROCKER]
-    cosine = np.abs((b * b + c * c - distance**2) / (2 * b * c)).max()
-    return math.acos(min(float(cosine), 1.0))
+    frame = math.atan2(linkage[DY] - linkage[OY], linkage[DX] - linkage[OX])
+    from_frame = crank - frame
+    cosines = cosines_of_transmission(
+        linkage[None], from_frame.min(keepdims=True), from_frame.max(keepdims=True)
+    )
+    return math.acos(min(float(np.abs(cosines).max()), 1.0))
 
 
 def proved_defects(

@@ -154,6 +154,24 @@ def least_transmission(linkages: Array) -> Array:
         return np.where(greatest <= 1.0, np.arccos(np.minimum(greatest, 1.0)), np.nan)
 
 
+def cosines_of_transmission(linkages: Array, first: Array, last: Array) -> Array:
+    """Greatest and least cosine of the angle ABD (lanes, 2) while the crank turns from one angle to another [rad].
+
+    The crank counts from the frame OD, first <= last. Beyond one, positive or negative, the linkage is open.
+    The cosine grows with that of the crank's angle, so both lie at the ends or where the crank stands along the frame.
+    """
+    ground, a, b, c = lengths(linkages).T
+    ends = np.cos(np.column_stack([first, last]))
+    # multiples of a half turn within the range: even ones along the frame, odd ones opposite
+    along = np.floor(last / (2 * np.pi)) >= np.ceil(first / (2 * np.pi))
+    opposite = np.floor((last - np.pi) / (2 * np.pi)) >= np.ceil((first - np.pi) / (2 * np.pi))
+    greatest = np.where(along, 1.0, ends.max(axis=1))
+    least = np.where(opposite, -1.0, ends.min(axis=1))
+    squared = (ground**2 + a**2)[:, None] - (2 * ground * a)[:, None] * np.column_stack([greatest, least])
+    cosines: Array = ((b * b + c * c)[:, None] - squared) / (2 * b * c)[:, None]
+    return cosines
+
+
 def transform(linkages: Array, factor: Complex, shift: Complex) -> Array:
     """Linkages turned and scaled by a complex factor (lanes,), then moved by `shift` (lanes,) [m]."""
     moved = linkages.copy()

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import linprog
@@ -25,6 +26,14 @@ REFINED, LAST = 8, 2
 SAMPLES = 61
 LEAST_RATIO, GREATEST_RATIO = 0.02, 50.0
 """Of a link to the frame."""
+KEPT_WITHIN = 1e-9
+Margins: TypeAlias = Callable[[Array, Array], Array]
+"""(starts, lengths) -> (lanes, constraints): by how much each constraint is kept, negative where it is not."""
+
+
+def keeps(margins: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    """Whether linkages keep all constraints, (lanes,)."""
+    return np.asarray((np.nan_to_num(margins, nan=-1.0) >= -KEPT_WITHIN).all(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +204,7 @@ def _polish(crank: Array, rocker: Array, first: list[int], second: list[int], pl
 def least_errors(
     crank: Array,
     rocker: Array,
-    keeps: Callable[[Array, Array, Array], np.ndarray[tuple[int, ...], np.dtype[np.bool_]]],
+    margins: Margins,
     progress: Callable[[float], None] = lambda share: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> FunctionLinkages:
@@ -204,7 +213,7 @@ def least_errors(
     Parameters
     ----------
     crank, rocker : (n,) angles [rad] from their starts
-    keeps : (starts, lengths, side) -> (lanes,) whether a linkage keeps what is required
+    margins : of what is required
     """
     # Three precision points at Chebyshev's places give the starts of the search.
     share = 0.5 - 0.5 * np.cos(np.pi * np.array([1, 3, 5]) / 6)
@@ -214,15 +223,16 @@ def least_errors(
     begun = three_points(crank[rows], rocker[rows], starts)
     errors = angle_errors(begun.starts, begun.lengths, begun.side, crank, rocker)
     worst = np.abs(errors).max(axis=1, initial=0.0)
-    good = np.isfinite(worst) & keeps(begun.starts, begun.lengths, begun.side)
+    good = np.isfinite(worst) & keeps(margins(begun.starts, begun.lengths))
     order = np.flatnonzero(good)[np.argsort(worst[good], kind="stable")][: 4 * KEPT]
     variables = np.column_stack([begun.starts, begun.lengths])[order]
     side = begun.side[order]
     progress(0.2)
-    variables = _squares(variables, side, crank, rocker)
+    fitted = _squares(variables, side, crank, rocker)
     progress(0.5)
+    # what the fit has led beyond a constraint begins where it was
+    variables = np.where(keeps(margins(fitted[:, :2], fitted[:, 2:]))[:, None], fitted, variables)
     worst = _worst(variables, side, crank, rocker)
-    worst = np.where(keeps(variables[:, :2], variables[:, 2:], side), worst, np.inf)
     chosen: list[int] = []
     for k in np.argsort(worst, kind="stable").tolist():
         alike = (
@@ -236,7 +246,7 @@ def least_errors(
             break
     refined = []
     for count, k in enumerate(chosen):
-        refined.append(_descend(variables[k], float(side[k]), crank, rocker, keeps))
+        refined.append(_descend(variables[k], float(side[k]), crank, rocker, margins))
         progress(0.5 + 0.3 * (count + 1) / len(chosen))
         if stop():
             break
@@ -249,7 +259,7 @@ def least_errors(
     variables, side = variables[order], side[order]
     for k in range(min(LAST, len(side))):
         if not stop():
-            variables[k] = _least_greatest(variables[k], float(side[k]), crank, rocker, keeps)
+            variables[k] = _least_greatest(variables[k], float(side[k]), crank, rocker, margins)
         progress(0.8 + 0.2 * (k + 1) / LAST)
     order = np.argsort(_worst(variables, side, crank, rocker), kind="stable")
     variables, side = variables[order], side[order]
@@ -313,13 +323,13 @@ def _least_greatest(
     side: float,
     crank: Array,
     rocker: Array,
-    keeps: Callable[[Array, Array, Array], np.ndarray[tuple[int, ...], np.dtype[np.bool_]]],
+    margins: Margins,
 ) -> Array:
     """The least greatest error, by linear programs in a region that shrinks where a step does not help."""
     # A region that has shrunk at a corner is opened again as long as that helps.
     for _round in range(8):
         before = float(_worst(variables[None], np.array([side]), crank, rocker)[0])
-        variables = _descend(variables, side, crank, rocker, keeps)
+        variables = _descend(variables, side, crank, rocker, margins)
         if _worst(variables[None], np.array([side]), crank, rocker)[0] > before * (1 - 1e-6):
             break
     return variables
@@ -330,14 +340,15 @@ def _descend(
     side: float,
     crank: Array,
     rocker: Array,
-    keeps: Callable[[Array, Array, Array], np.ndarray[tuple[int, ...], np.dtype[np.bool_]]],
+    margins: Margins,
 ) -> Array:
     sides = np.array([side])
     return lessen_greatest(
         variables,
         lambda at: angle_errors(at[None, :2], at[None, 2:], sides, crank, rocker)[0],
         lambda at: _error_slopes(at[None], sides, crank)[0],
-        lambda at: bool(keeps(at[None, :2], at[None, 2:], sides)[0]),
+        lambda at: bool(keeps(margins(at[None, :2], at[None, 2:]))[0]),
+        lambda at: margins(at[None, :2], at[None, 2:])[0],
     )
 
 
@@ -346,6 +357,7 @@ def lessen_greatest(
     errors: Callable[[Array], Array],
     slopes: Callable[[Array], Array],
     keeps: Callable[[Array], bool],
+    margins: Callable[[Array], Array] = lambda at: np.empty(0),
 ) -> Array:
     """Variables, the first two of them angles, from which no linear program lessens the greatest error.
 
@@ -354,6 +366,7 @@ def lessen_greatest(
     errors : variables -> (n,), infinite where there are none
     slopes : variables -> (n, variables)
     keeps : whether variables keep what is required
+    margins : by how much each constraint is kept, (constraints,); a program keeps to them as far as they are linear
     """
     region = 0.05
     count = len(variables)
@@ -361,12 +374,14 @@ def lessen_greatest(
     for _iteration in range(80):
         missed, by = errors(variables), slopes(variables)
         one = np.ones((len(missed), 1))
-        bound = np.vstack([np.hstack([by, -one]), np.hstack([-by, -one])])
+        left, rise = margins(variables), _slopes_of(margins, variables)
+        free = np.zeros((len(left), 1))
+        bound = np.vstack([np.hstack([by, -one]), np.hstack([-by, -one]), np.hstack([-rise, free])])
         limits = [(-region, region)] * 2 + [(-region * abs(x), region * abs(x)) for x in variables[2:]]
         solved = linprog(
             [*[0] * count, 1],
             A_ub=bound,
-            b_ub=np.concatenate([-missed, missed]),
+            b_ub=np.concatenate([-missed, missed, left]),
             bounds=[*limits, (0.0, None)],
             method="highs",
         )
@@ -384,3 +399,10 @@ def lessen_greatest(
             if region < 1e-9:
                 break
     return variables
+
+
+def _slopes_of(margins: Callable[[Array], Array], variables: Array) -> Array:
+    """Derivatives (constraints, variables) of margins, by differences that rounding allows."""
+    step = 1e-6
+    shifts = step * np.eye(len(variables))
+    return np.column_stack([(margins(variables + d) - margins(variables - d)) / (2 * step) for d in shifts])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -11,20 +12,21 @@ from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.text_formula import compile_formula
 from centrode.synthesis.answers import SynthesisResults, four_bar_answer
-from centrode.synthesis.four_bars import Array, crank_margins, least_transmission, lengths
+from centrode.synthesis.four_bars import Array, cosines_of_transmission, crank_margins, lengths
 from centrode.synthesis.function_generation import (
     GRID,
     SAMPLES,
     FunctionLinkages,
+    Margins,
     angle_errors,
     five_points,
     four_points,
+    keeps,
     least_errors,
     three_points,
 )
 from centrode.synthesis.requests import Synthesis, SynthesisTask
 
-Keeps = Callable[[Array, Array, Array], np.ndarray[tuple[int, ...], np.dtype[np.bool_]]]
 MET = 1e-9
 
 
@@ -54,11 +56,11 @@ def function_answers(
     exact = wanted.exact
     if wanted.targets is not None and len(crank) <= 5:
         exact = len(crank)
-    keeps = _keeps(wanted)
+    margins = _margins(wanted, crank)
     if exact is None:
-        found = least_errors(crank, rocker, keeps, progress, stop)
+        found = least_errors(crank, rocker, margins, progress, stop)
     else:
-        found = _exact(wanted, crank, rocker, exact, keeps)
+        found = _exact(wanted, crank, rocker, exact, margins)
     progress(1.0)
     if not len(found.side):
         raise MotionError(
@@ -131,28 +133,45 @@ def wanted_angles(wanted: Synthesis, shares: Array | None = None) -> tuple[Array
     return wanted.swings[0] * share, wanted.swings[1] * (chosen - y[0]) / np.ptp(y)
 
 
-def _keeps(wanted: Synthesis) -> Keeps:
-    """Whether linkages with the frame 1 keep the constraints."""
+def _margins(wanted: Synthesis, crank: Array) -> Margins:
+    """By how much linkages with the frame 1 keep each constraint; the crank's angles count from its start [rad]."""
     constraints = wanted.constraints
 
-    def keeps(starts: Array, sizes: Array, side: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-        linkages = np.zeros((len(sizes), 9))
-        linkages[:, 2], linkages[:, 4:7] = 1.0, sizes
-        good = np.ones(len(sizes), dtype=bool)
+    def margins(starts: Array, sizes: Array) -> Array:
+        linkages = _with_unit_frame(sizes)
+        columns = [np.empty((len(sizes), 0))]
         if constraints.crank is not None:
-            good &= (crank_margins(linkages) > MET).all(axis=1)
+            columns.append(crank_margins(linkages) - 2 * MET)
         if constraints.transmission is not None:
-            with np.errstate(invalid="ignore"):
-                good &= least_transmission(linkages) >= constraints.transmission - MET
+            # cosines, as an angle has no slope where the linkage is stretched
+            greatest = math.cos(constraints.transmission)
+            columns.append(greatest - np.abs(_cosines(linkages, starts, crank)))
         if constraints.length_ratio is not None:
             all_lengths = lengths(linkages)
-            good &= all_lengths.max(axis=1) <= constraints.length_ratio * all_lengths.min(axis=1) + MET
-        return good
+            columns.append(
+                (constraints.length_ratio * all_lengths.min(axis=1) - all_lengths.max(axis=1))[:, None]
+            )
+        return np.column_stack(columns)
 
-    return keeps
+    return margins
 
 
-def _exact(wanted: Synthesis, crank: Array, rocker: Array, exact: int, keeps: Keeps) -> FunctionLinkages:
+def _cosines(linkages: Array, starts: Array, crank: Array) -> Array:
+    """Cosines that bound the transmission angle (lanes, 2): over a full turn, or where the crank is used."""
+    turns = (crank_margins(linkages) > 0).all(axis=1)
+    first = np.where(turns, 0.0, starts[:, 0] + crank.min())
+    last = np.where(turns, 2 * np.pi, starts[:, 0] + crank.max())
+    return cosines_of_transmission(linkages, first, last)
+
+
+def _with_unit_frame(sizes: Array) -> Array:
+    """Linkages from O = 0 to D = 1 of crank, coupler and rocker (lanes, 3)."""
+    linkages = np.zeros((len(sizes), 9))
+    linkages[:, 2], linkages[:, 4:7] = 1.0, sizes
+    return linkages
+
+
+def _exact(wanted: Synthesis, crank: Array, rocker: Array, exact: int, margins: Margins) -> FunctionLinkages:
     """Linkages through precision points: those of a table, or at Chebyshev's places of a formula's range."""
     first, second = crank, rocker
     if len(crank) != exact:
@@ -168,14 +187,12 @@ def _exact(wanted: Synthesis, crank: Array, rocker: Array, exact: int, keeps: Ke
         found = five_points(first, second)
     errors = angle_errors(found.starts, found.lengths, found.side, crank, rocker)
     worst = np.abs(errors).max(axis=1, initial=0.0)
-    good = keeps(found.starts, found.lengths, found.side) & np.isfinite(worst)
+    good = keeps(margins(found.starts, found.lengths)) & np.isfinite(worst)
     order = np.flatnonzero(good)
     if len(crank) == exact:
         # all meet the points alike: what transmits best comes first
-        linkages = np.zeros((len(order), 9))
-        linkages[:, 2], linkages[:, 4:7] = 1.0, found.lengths[order]
-        angle = np.nan_to_num(least_transmission(linkages), nan=-1.0)
-        order = order[np.argsort(-angle, kind="stable")]
+        cosines = _cosines(_with_unit_frame(found.lengths), found.starts, crank)
+        order = order[np.argsort(np.abs(cosines).max(axis=1)[order], kind="stable")]
     else:
         order = order[np.argsort(worst[order], kind="stable")]
     order = order[: 6 * wanted.answers]

@@ -654,11 +654,15 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
     some = slice(None, None, max(1, len(first) // 20))
     worst = np.abs(_function_errors(variables, side, first, second)).max(axis=1, initial=0.0)
     best = np.argsort(worst, kind="stable")[:STARTS]
-    variables, side = _squares(variables[best], side[best], first[some], second[some]), side[best]
+    begun, side = variables[best], side[best]
+    variables = _squares(begun, side, first[some], second[some])
     progress(0.5)
-    keeps = _keeps(wanted)
+    keeps = _keeps(wanted, crank)
+    if exact is None:
+        # what the fit has led beyond a constraint begins where it was
+        variables = np.where(keeps(variables, side)[:, None], variables, begun)
     worst = np.abs(_function_errors(variables, side, first, second)).max(axis=1, initial=0.0)
-    worst = np.where(keeps(variables), worst, np.inf)
+    worst = np.where(keeps(variables, side), worst, np.inf)
     if exact is None:
         order = np.argsort(worst, kind="stable")
     else:
@@ -689,10 +693,7 @@ def _function_answers(task: SynthesisTask, progress: Progress, stop: Callable[[]
 def _ranks_of_exact(variables: Array, side: Array, crank: Array, rocker: Array, *, only_exact: bool) -> Array:
     """What linkages with exact positions are sorted by: the greatest error elsewhere, else the transmission."""
     if only_exact:
-        cosines = np.abs(transmission_cosines(_frames(variables))).max(axis=1)
-        # beyond one where the linkage does not close all round: it has no such angle, and comes last
-        with np.errstate(invalid="ignore"):
-            return np.asarray(-np.nan_to_num(np.arccos(cosines)))
+        return -_transmissions_of_functions(variables, side, crank)
     errors = np.abs(_function_errors(variables, side, crank, rocker))
     return np.asarray(errors.max(axis=1, initial=0.0))
 
@@ -801,18 +802,25 @@ def _squares(variables: Array, side: Array, crank: Array, rocker: Array) -> Arra
     return variables
 
 
-def _keeps(wanted: Synthesis) -> Callable[[Array], Booleans]:
+def _transmissions_of_functions(variables: Array, side: Array, crank: Array) -> Array:
+    """Least transmission angles (lanes,) [rad]: over a full turn, or where the crank is used."""
+    rows = _frames(variables)
+    turns = np.asarray((spherical_crank_margins(rows) > 0).all(axis=1))
+    return _transmissions(rows, side, variables[:, :1] + crank, turns)
+
+
+def _keeps(wanted: Synthesis, crank: Array) -> Callable[[Array, Array], Booleans]:
     constraints = wanted.constraints
 
-    def keeps(variables: Array) -> Booleans:
+    def keeps(variables: Array, side: Array) -> Booleans:
         rows = _frames(variables)
         arcs = variables[:, 2:]
         good: Booleans = np.all((arcs > LEAST_ARC) & (arcs < np.pi - LEAST_ARC), axis=1)
         if constraints.crank is not None:
             good &= (spherical_crank_margins(rows) > 1e-9).all(axis=1)
         if constraints.transmission is not None:
-            most = np.cos(constraints.transmission) + 1e-9
-            good &= (np.abs(transmission_cosines(rows)) <= most).all(axis=1)
+            least = constraints.transmission - 1e-9
+            good &= _transmissions_of_functions(variables, side, crank) >= least
         if constraints.length_ratio is not None:
             good &= arcs.max(axis=1) <= constraints.length_ratio * arcs.min(axis=1)
         return good
@@ -821,7 +829,7 @@ def _keeps(wanted: Synthesis) -> Callable[[Array], Booleans]:
 
 
 def _lessen(
-    row: Array, side: Array, crank: Array, rocker: Array, keeps: Callable[[Array], Booleans]
+    row: Array, side: Array, crank: Array, rocker: Array, keeps: Callable[[Array, Array], Booleans]
 ) -> Array:
     for _round in range(4):
         before = float(np.abs(_function_errors(row[None], side, crank, rocker)).max())
@@ -829,7 +837,7 @@ def _lessen(
             row,
             lambda at: _function_errors(at[None], side, crank, rocker)[0],
             lambda at: _function_slopes(at[None], side, crank, rocker)[0],
-            lambda at: bool(keeps(at[None])[0]),
+            lambda at: bool(keeps(at[None], side)[0]),
         )
         if np.abs(_function_errors(row[None], side, crank, rocker)).max() > before * (1 - 1e-6):
             break

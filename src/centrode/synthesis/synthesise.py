@@ -14,7 +14,14 @@ from centrode.synthesis.mechanism_synthesis import mechanism_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
 from centrode.synthesis.processes import check_jobs, processes
-from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SPHERICAL, SYNTHESES, SynthesisTask
+from centrode.synthesis.requests import (
+    FOUR_BARS,
+    MOST_POSES,
+    SPHERICAL,
+    STROKE_TOPOLOGIES,
+    SYNTHESES,
+    SynthesisTask,
+)
 from centrode.synthesis.spherical_synthesis import spherical_answers
 from centrode.synthesis.stroke_synthesis import stroke_answers
 
@@ -101,4 +108,9 @@ def synthesise(
         return stroke_answers(task)
     if wanted.kind == "function" and wanted.topology in FOUR_BARS:
         return function_answers(task, progress, stop)
-    raise NotComputedYet("[synthesis]", _("this kind is not synthesised for this topology"))
+    known = STROKE_TOPOLOGIES if wanted.kind == "strokes" else (*FOUR_BARS, *SPHERICAL)
+    raise NotComputedYet(
+        "[synthesis] topology",
+        _("this kind is not synthesised for this topology"),
+        _("one of {names}, or links described beside [synthesis]").format(names=", ".join(known)),
+    )

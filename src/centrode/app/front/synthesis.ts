@@ -214,7 +214,7 @@ async function begin(): Promise<void> {
       labelled(formula, "formula", "function", "new"), labelled(from, "x_from", "function", "new"), labelled(to, "x_to", "function", "new"),
       labelled(turns, "swing_crank", "function", "new"), labelled(swings, "swing_rocker", "function", "new"),
       closedRow, crankRow, orderRow,
-      labelled(transmission, "transmission", "path motion function strokes"), labelled(ratio, "length_ratio", "path motion"), labelled(size, "most_size", "path motion"),
+      labelled(transmission, "transmission", "path motion function strokes"), labelled(ratio, "length_ratio", "path motion function"), labelled(size, "most_size", "path motion"),
       labelled(trade, "trade_off", "path", "new"), rowsRow, bounds,
       make("div", { className: "acts" }, search, stop, clear), share, said,
       make("a", { href: "/", textContent: words.workbench!, id: "workbench" })),
@@ -287,6 +287,8 @@ async function begin(): Promise<void> {
     for (const row of root.querySelectorAll<HTMLElement>("[data-kinds]")) {
       row.hidden = !row.dataset.kinds!.split(" ").includes(kind.value) || Boolean(row.dataset.whose && row.dataset.whose !== of.value);
     }
+    // the least error alone leads to linkages that hardly transmit anything, or have links without end
+    if (!transmission.dataset.own) transmission.value = !isOpen() && kind.value === "function" ? "30" : "";
     crankRow.hidden ||= isOpen() && !offer!.crank;
     choose();
     clear.hidden = !draws();
@@ -367,6 +369,7 @@ async function begin(): Promise<void> {
   const ofOpen = (): Record<string, unknown> => {
     const constraints: Record<string, unknown> = {}, turns = output.value.startsWith("angle");
     if (Number(transmission.value) > 0) constraints.transmission = degrees(transmission);
+    if (kind.value !== "strokes" && Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
     const free = Object.fromEntries(ranges.filter((one) => one.box.checked).map((one) => [one.path, [`${one.least.value} mm`, `${one.greatest.value} mm`]]));
     if (kind.value === "strokes") {
       const own = turns ? { swing: degrees(swing) } : { stroke: `${stroke.value} mm` };
@@ -377,7 +380,6 @@ async function begin(): Promise<void> {
     }
     constraints.order = order.checked;
     if (crank.checked && offer!.crank) constraints.crank = offer!.crank;
-    if (Number(ratio.value) > 0) constraints.length_ratio = Number(ratio.value);
     if (Number(size.value) > 0) constraints.size = [`${size.value} mm`, `${size.value} mm`];
     const places = targets.map(([x, y, turn]) => [`${x} mm`, `${y} mm`, ...(poses() ? [`${turn} deg`] : [])]);
     if (poses()) return { kind: "motion", point: point.value, link: link.value, targets: places, free, constraints };
@@ -393,7 +395,7 @@ async function begin(): Promise<void> {
     if (kind.value === "function") {
       const table = targets.length ? { targets: targets.map(([turn, other]) => [`${turn} deg`, `${other} deg`]) }
         : { formula: formula.value, x: [Number(from.value), Number(to.value)], swings: [degrees(turns), degrees(swings)] };
-      return { kind: "function", ...table, constraints: angle };
+      return { kind: "function", ...table, constraints: { ...angle, ...(Number(ratio.value) > 0 ? { length_ratio: Number(ratio.value) } : {}) } };
     }
     const constraints: Record<string, unknown> = { order: order.checked, ...angle };
     if (crank.checked) constraints.crank = "OA";
@@ -449,6 +451,7 @@ async function begin(): Promise<void> {
   rows.addEventListener("input", read);
   closed.addEventListener("change", () => { forget(); paint(); });
   for (const field of [formula, from, to, turns, swings, stroke, swing, slow]) field.addEventListener("input", () => { forget(); paint(); });
+  transmission.addEventListener("input", () => { transmission.dataset.own = "yes"; });
   topology.addEventListener("change", () => { choose(); forget(); paint(); });
   trade.addEventListener("change", () => { forget(); paint(); });
   kind.addEventListener("change", change);

@@ -190,6 +190,23 @@ class Terms:
         )
 
 
+@dataclass
+class _HeldRows:
+    """What the motion has to hold, equation by equation: rows of G, values, speeds and bias (see `Terms`)."""
+
+    rows: list[Vector]
+    values: list[Number]
+    speeds: list[Number]
+    bias: list[Number]
+
+    def add(self, row: Vector, value: Number, speed: Number, bias: Number) -> None:
+        """One more equation."""
+        self.rows.append(row)
+        self.values.append(value)
+        self.speeds.append(speed)
+        self.bias.append(bias)
+
+
 @dataclass(frozen=True)
 class Motion:
     """Accelerations with the forces that belong to them.
@@ -305,25 +322,8 @@ class EquationsOfMotion:
         strengths = [load.term.strength(state) for load in self.loads]
         powers = self._add_loads(state, columns, force, strengths)
         outputs, output_powers, state_rates = self._add_controls(m, state, columns, force, states)
-        rows, residuals = self._closures(jets, in_time, columns)
-        gaps = [jet.coefficients[0] for jet in residuals]
-        drifts = [jet.coefficients[1] for jet in residuals]
-        bias = [times(2.0, jet.coefficients[2]) for jet in residuals]
-        measures: list[ContactMeasure] = []
-        for contact, mode in zip(self.contacts, modes or (), strict=False):
-            slope = contact.coordinate.slope(state)
-            own = self._measure(m, contact, mode, state, _value_of(contact, state), slope.value)
-            measures.append(own)
-            row: Vector = {}
-            for k in self._reach(contact.coordinate):
-                add_term(row, k, contact.coordinate.slope(columns[k]).value)
-            for k, x in row.items():
-                add_term(force, k, times(x, own.strength))
-            if contact.has_row:
-                rows.append(row)
-                gaps.append(_gap(m, contact, own.value - mode.held - times(contact.drift, time)))
-                drifts.append(own.speed - contact.drift)
-                bias.append(slope.derivative(1))
+        held = self._closures(jets, in_time, columns)
+        measures = self._add_contacts(m, state, columns, modes or (), held, force)
         acting = [(load.term.coordinate, x) for load, x in zip(self.loads, strengths, strict=True)]
         acting += [
             (control.drives, output)
@@ -340,10 +340,10 @@ class EquationsOfMotion:
             self.size,
             mass,
             force,
-            rows,
-            gaps,
-            drifts,
-            bias,
+            held.rows,
+            held.values,
+            held.speeds,
+            held.bias,
             powers,
             [law.coefficients[1] for law in laws.values()],
             plain,
@@ -355,6 +355,31 @@ class EquationsOfMotion:
             modes or (),
             openings,
         )
+
+    def _add_contacts(
+        self,
+        m: Namespace,
+        state: JointState,
+        columns: Sequence[JointState],
+        modes: Sequence[ContactMode],
+        held: _HeldRows,
+        force: Vector,
+    ) -> list[ContactMeasure]:
+        """What contacts measure in their modes; forces of these join the others, and rows those of the closures."""
+        measures: list[ContactMeasure] = []
+        for contact, mode in zip(self.contacts, modes, strict=False):
+            slope = contact.coordinate.slope(state)
+            own = self._measure(m, contact, mode, state, _value_of(contact, state), slope.value)
+            measures.append(own)
+            row: Vector = {}
+            for k in self._reach(contact.coordinate):
+                add_term(row, k, contact.coordinate.slope(columns[k]).value)
+            for k, x in row.items():
+                add_term(force, k, times(x, own.strength))
+            if contact.has_row:
+                gap = _gap(m, contact, own.value - mode.held - times(contact.drift, state.time))
+                held.add(row, gap, own.speed - contact.drift, slope.derivative(1))
+        return measures
 
     @cached_property
     def _joint_openings(self) -> dict[int, tuple[JointOpening, ...]]:
@@ -581,9 +606,7 @@ class EquationsOfMotion:
         depends = (self.tree.depends.get(body, frozenset()) for body in bodies)
         return sorted(frozenset[int]().union(*depends))
 
-    def _closures(
-        self, jets: JetFunctions, in_time: Positions, columns: Sequence[JointState]
-    ) -> tuple[list[Vector], list[Jet]]:
+    def _closures(self, jets: JetFunctions, in_time: Positions, columns: Sequence[JointState]) -> _HeldRows:
         rows: list[Vector] = []
         residuals: list[Jet] = []
         for constraint in self.constraints:
@@ -595,7 +618,12 @@ class EquationsOfMotion:
                 for number, x in enumerate(constraint.residual(jets, self.numbers, columns[k].at)):
                     slope = x.coefficients[1] if isinstance(x, Jet) else 0.0
                     add_term(rows[first + number], k, slope)
-        return rows, residuals
+        return _HeldRows(
+            rows,
+            [jet.coefficients[0] for jet in residuals],
+            [jet.coefficients[1] for jet in residuals],
+            [times(2.0, jet.coefficients[2]) for jet in residuals],
+        )
 
     # what follows from the terms
 

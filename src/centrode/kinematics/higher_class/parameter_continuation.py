@@ -144,6 +144,12 @@ class _WalkerPlaces:
         """Some of the places."""
         return _WalkerPlaces(self.series[:, which], self.size[which], self.pace[which], self.direction[which])
 
+    def lie_straight_behind(self, before: _WalkerPlaces, who: Lanes) -> Mask:
+        """Whether the curve leads here from places of some walkers before without a turn, a limit or a change point."""
+        slow = (self.pace <= FAST) & (self.size / before.size[who] >= LEFT)
+        straight: Mask = total(self.direction * before.direction[who]) >= STRAIGHT
+        return slow & straight
+
     def put(self, which: Lanes, others: _WalkerPlaces) -> None:
         """Put others in some of the places."""
         self.series[:, which], self.size[which] = others.series, others.size
@@ -190,10 +196,7 @@ def walk_by_parameter(
             way = stride * PITCH * here.pace[who]
             found, reached, wrong = _newton(loops, foretold - whole[who], whole[who], known[0], way)
             there = _WalkerPlaces.at(loops, reached, whole[who], known, around.unit)
-            good = (
-                found & (wrong <= TRUST * way) & (there.pace <= FAST) & (there.size / here.size[who] >= LEFT)
-            )
-            good &= total(there.direction * here.direction[who]) >= STRAIGHT
+            good = found & (wrong <= TRUST * way) & there.lie_straight_behind(here, who)
             going[who[~good]] = stride[~good] > 1
             strides[who[~good]] = np.maximum(stride[~good] * 2 // 5, 1)
             if not good.any():
@@ -210,15 +213,18 @@ def walk_by_parameter(
             for k, walker in enumerate(who.tolist()):
                 at = float(initial + steps[walker] * number[walker])
                 courses[walker].add(at, there.series[:, k], courses[walker].sense)
-            longer = np.minimum(
-                stride * np.clip((TARGET * way / wrong) ** 0.2, 0.3, 2.0), GREATEST / (PITCH * there.pace)
-            )
-            strides[who] = np.maximum(longer, 1.0).astype(np.intp)
+            strides[who] = _next_strides(stride, way, wrong, there.pace)
             for walker in (*who[number[who] >= most[who]], *closed(who, courses)):
                 courses[walker].ended, going[walker] = True, False
         for walker, course in enumerate(courses):
             course.regular = _is_regular(loops, course, ahead, walker, whole[walker])
     return courses
+
+
+def _next_strides(stride: Lanes, way: Array, wrong: Array, pace: Array) -> Lanes:
+    """Strides after steps of a way each that the polynomials foretold wrong by so much: their fifth order decides."""
+    longer = np.minimum(stride * np.clip((TARGET * way / wrong) ** 0.2, 0.3, 2.0), GREATEST / (PITCH * pace))
+    return np.maximum(longer, 1.0).astype(np.intp)
 
 
 def _is_regular(loops: LoopClosure, course: WalkerCourse, ahead: _Ahead, walker: int, whole: Array) -> bool:

@@ -14,8 +14,9 @@ from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import bent_drives, half_widths
 from centrode.kinematics.machine_code.variables import PARAMETER, Varied, traced_path
 from centrode.kinematics.path import Path, SampleGrid
-from centrode.kinematics.plan_evaluation import EvaluationPolicy, ReachedRadicand
+from centrode.kinematics.plan_evaluation import EvaluationPolicy, ReachedRadicand, is_long_row
 from centrode.kinematics.preparation import Ready
+from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.expressions import EXPRESSIONS, Operand, variable
 from centrode.numerics.jets import Jet
@@ -85,8 +86,8 @@ def bent_guards(
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     # with one drive all cells of the mesh are equally wide, and the width is a constant of the kernel
     half: Operand = variable(HALF) if path.by_time else width or 0.5 * path.step
-    cells = Cells(half, EXPRESSIONS)
-    place = NODE_BENDS.variable(variable(PARAMETER), half)
+    cells = Cells(half, EXPRESSIONS, holds=is_long_row(known.structure))
+    place = NODE_BENDS.variable(variable(PARAMETER), cells)
     drives = {drive: _driven(drive, x, cells) for drive, x in path.drive_values(NODE_BENDS, place).items()}
     hooks = _Bounding(ready.assembled.signs if signs is None else signs, {}, cells)
     at = Positions.of_frame(kinematics.numbers, drives, NODE_BENDS)
@@ -113,7 +114,7 @@ def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
     half = half_widths(mesh)
     bends = {HALF: np.broadcast_to(half, mesh.shape)}
     with np.errstate(all="ignore"):
-        for drive, value in bent_drives(path, mesh, half).items():
+        for drive, value in bent_drives(path, mesh, Cells(half, ARRAYS)).items():
             if isinstance(value, Bent):
                 bends[_name(drive)] = np.broadcast_to(value.bend, mesh.shape)
     return bends
