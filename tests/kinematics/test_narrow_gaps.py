@@ -17,7 +17,8 @@ from centrode.kinematics.plan_evaluation import FixedSigns
 from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import of_batch, requested_grid, solve
 from centrode.numerics import machine_code
-from centrode.numerics.bends import Bent
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.bends import Bent, Cells
 from centrode.numerics.jets import Jet
 from centrode.structure.dimensions import dimensions_of
 from growing import DYADS, grown, mechanism_of
@@ -188,7 +189,10 @@ def test_random_chains_against_the_scan(made: Callable[..., ct.Mechanism], kinds
     [(lambda *x: mechanism_of(grown(*x)), DYADS), (on_sphere, growing_sphere.KINDS)],
     ids=["plane", "sphere"],
 )
-def test_bends_bound_second_derivatives(made: Callable[..., ct.Mechanism], kinds: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("holds", [False, True], ids=["lengths", "directions"])
+def test_bends_bound_second_derivatives(
+    made: Callable[..., ct.Mechanism], kinds: tuple[str, ...], holds: bool
+) -> None:
     """Everywhere in the cells, of all that a chain gives: exact second derivatives at seven places of each."""
     for chain in chains(kinds, 10):
         prepared = ready(made(*chain))
@@ -196,7 +200,8 @@ def test_bends_bound_second_derivatives(made: Callable[..., ct.Mechanism], kinds
         centres = kinematics.path.initial + np.arange(180) * 4.0 * STEP
         inside = centres[:, None] + np.linspace(-0.5, 0.5, 7) * STEP
         with np.errstate(all="ignore"):
-            bent = kinematics.positions(BENDS, BENDS.variable(centres, 0.5 * STEP), FixedSigns(BENDS, signs))
+            cells = Cells(0.5 * STEP, ARRAYS, holds)
+            bent = kinematics.positions(BENDS, BENDS.variable(centres, cells), FixedSigns(BENDS, signs))
             exact = kinematics.positions(JETS, Jet.variable(inside, 2), FixedSigns(JETS, signs))
         pairs = [
             *(
