@@ -18,7 +18,6 @@ from centrode.synthesis.requests import (
     FOUR_BARS,
     MOST_POSES,
     SPHERICAL,
-    STROKE_TOPOLOGIES,
     SYNTHESES,
     SynthesisTask,
 )
@@ -108,9 +107,10 @@ def synthesise(
         return stroke_answers(task)
     if wanted.kind == "function" and wanted.topology in FOUR_BARS:
         return function_answers(task, progress, stop)
-    known = STROKE_TOPOLOGIES if wanted.kind == "strokes" else (*FOUR_BARS, *SPHERICAL)
     raise NotComputedYet(
         "[synthesis] topology",
         _("this kind is not synthesised for this topology"),
-        _("one of {names}, or links described beside [synthesis]").format(names=", ".join(known)),
+        _("one of {names}, or links described beside [synthesis]").format(
+            names=", ".join((*FOUR_BARS, *SPHERICAL))
+        ),
     )
