@@ -321,6 +321,32 @@ def test_a_copy_of_a_slider_slides():
     assert beside == pytest.approx(np.broadcast_to([5.0, 0.0], beside.shape), abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["whitworth-quick-return", "slider-crank-offset", "six-bar-press", "shaper"])
+def test_a_copy_of_a_mechanism_moves_as_the_mechanism_does(name):
+    """With its slots and lines, drawn by coordinates or by lengths and angles: driven alike, its points move alike."""
+    text = example_text(name)
+    before = SketchParts(read_document(text, HERE))
+    chosen = [*before.links, *(f"guide {k + 1}" for k in range(len(before.guides)))]
+    patch = patch_of(text, {"do": "duplicate", "objects": chosen, "by": [9, 0]})
+    after = SketchParts(patch.document)
+    assert len(after.guides) == 2 * len(before.guides)
+    originals = list(dict.fromkeys(point for one in before.links for point in before.links[one]))
+    copies = dict(zip(originals, (one for one in patch.named if one in after.points), strict=True))
+    crank = before.tables["drives"][0]["link"]
+    turned = list(after.links)[len(before.links) + list(before.links).index(crank)]
+    drive = {
+        key: value
+        for key, value in before.tables["drives"][0].items()
+        if key not in ("link", "name", "start")
+    }
+    tables = {**after.tables, "drives": [before.tables["drives"][0], {"link": turned, **drive}]}
+    tables = {key: value for key, value in tables.items() if key in ("frame", "links", "guides", "drives")}
+    places = ct.motion(ct.Mechanism(**tables), 25).position
+    for old, new in copies.items():
+        beside = places.sel(point=new).values - places.sel(point=old).values
+        assert beside == pytest.approx(np.broadcast_to([9.0, 0.0], beside.shape), abs=2e-4 * before.size)
+
+
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_a_mirror_image_slides_on_the_image_of_its_line(axis):
     """By the closed form: the slider's line has the other slope, so mirrored backward turns give mirrored places."""

@@ -49,7 +49,9 @@ def duplicate(patch: Patch, operation: Operation) -> None:
     else:
         by = patch.place_of(operation, "by")
         if not sketch.draws_points:
-            _duplicate_measured(patch, links, points, by)
+            _copy_guides(
+                patch, sketch, operation["objects"], *_duplicate_measured(patch, links, points, by), by
+            )
             return
         places = {
             point: (sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]) for point in points
@@ -62,15 +64,45 @@ def duplicate(patch: Patch, operation: Operation) -> None:
     for link in links:
         _copy_link(patch, sketch, link, new)
         copies[link] = patch.named[-1]
-    for k, guide in enumerate(() if sketch.on_sphere else sketch.guides):
-        carried = guide.get("on", FRAME) in copies and guide.get("point") in new
-        # a line through a place of its own stays the line of the original
-        if carried and guide_name(sketch, k) in operation["objects"] and guide.get("through") is None:
-            entries = {"direction": guide["direction"]}
-            patch.add_entry(
-                "guides", {"point": new[guide["point"]], "on": copies[guide.get("on", FRAME)], **entries}
-            )
-            patch.named.append(guide_name(patch.sketch, len(patch.sketch.guides) - 1))
+    if not sketch.on_sphere:
+        _copy_guides(patch, sketch, operation["objects"], copies, new, by)
+
+
+def _copy_guides(
+    patch: Patch,
+    sketch: SketchParts,
+    chosen: Sequence[str],
+    copies: Mapping[str, str],
+    new: Mapping[str, str],
+    by: Vector,
+) -> None:
+    """Copies of the guides that are chosen with their point and the link that carries them, moved `by` a way [m]."""
+    for k, guide in enumerate(sketch.guides):
+        point, on = str(guide.get("point")), str(guide.get("on", FRAME))
+        if guide_name(sketch, k) not in chosen or point not in new or on not in copies:
+            continue
+        entries = {"point": new[point], "on": copies[on]}
+        through = guide.get("through")
+        if isinstance(through, str) and through in new:
+            entries["through"] = new[through]
+        elif through is not None:
+            entries["through"] = _moved_place(patch, through, by) if on == FRAME else through
+        entries["direction"] = guide["direction"]
+        # of a slider that stays behind the copy keeps neither the name nor the angle to the line
+        if guide.get("link") in copies:
+            entries["link"] = copies[guide["link"]]
+            entries |= {"angle": guide["angle"]} if "angle" in guide else {}
+        patch.add_entry("guides", entries)
+        patch.named.append(guide_name(patch.sketch, len(patch.sketch.guides) - 1))
+
+
+def _moved_place(patch: Patch, given: Any, by: Vector) -> Any:
+    """A place in the frame as the file writes it, moved; a name, or what the initial position gives, stays."""
+    place = coordinates(given)
+    if place is None:
+        return given
+    moved = patch.pair((place[0] + by[0], place[1] + by[1]))
+    return {"placed": moved} if isinstance(given, Mapping) else moved
 
 
 def _turned_places(patch: Patch, operation: Operation, places: Mapping[str, Vector]) -> dict[str, Vector]:
@@ -135,8 +167,13 @@ def _copy_link(patch: Patch, sketch: SketchParts, link: str, new: Mapping[str, s
     patch.named.append(name)
 
 
-def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector) -> None:
-    """Copies of links with lengths and angles: each part of them hangs on a point of the frame."""
+def _duplicate_measured(
+    patch: Patch, links: Sequence[str], points: Sequence[str], by: Vector
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Copies of links with lengths and angles: each part of them hangs on a point of the frame.
+
+    The names of links and points are given with those of their copies.
+    """
     sketch = patch.sketch
     anchors = [point for point in points if point in sketch.frame_points]
     # a part that no point of the frame carries gets one: everything else hangs on it by lengths and angles
@@ -147,11 +184,13 @@ def _duplicate_measured(patch: Patch, links: Sequence[str], points: Sequence[str
     for point in anchors:
         place = sketch.places[point]
         patch.write((("frame", "points", new[point]), patch.pair((place[0] + by[0], place[1] + by[1]))))
+    copies = {FRAME: FRAME}
     for link in links:
         _copy_link(patch, sketch, link, new)
-        name = patch.named[-1]
+        name = copies[link] = patch.named[-1]
         if sketch.angle(link) is None or sketch.tables["links"][link].get("angle") is None:
             patch.write((("links", name, "angle"), patch.angle(sketch.poses[link][1])))
+    return copies, new
 
 
 def _parts(sketch: SketchParts, links: Sequence[str], points: Sequence[str]) -> list[list[str]]:
