@@ -49,9 +49,8 @@ def duplicate(patch: Patch, operation: Operation) -> None:
     else:
         by = patch.place_of(operation, "by")
         if not sketch.draws_points:
-            _copy_guides(
-                patch, sketch, operation["objects"], *_duplicate_measured(patch, links, points, by), by
-            )
+            measured = _duplicate_measured(patch, links, points, by)
+            _copy_guides(patch, sketch, operation["objects"], *measured, by)
             return
         places = {
             point: (sketch.places[point][0] + by[0], sketch.places[point][1] + by[1]) for point in points

@@ -129,7 +129,7 @@ def write_report(
     kinds = list(dict.fromkeys(formats))
     with speaking(report.language):
         begun = {}
-        for kind in sorted(kinds, key=FIRST.__ne__):
+        for kind in sorted(kinds, key=lambda kind: kind != FIRST):
             if said is not None:
                 said(f"{name}.{kind}")
             begun[kind] = _begin(report, kind, name)

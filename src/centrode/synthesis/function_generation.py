@@ -27,6 +27,7 @@ SAMPLES = 61
 LEAST_RATIO, GREATEST_RATIO = 0.02, 50.0
 """Of a link to the frame."""
 KEPT_WITHIN = 1e-9
+"""A margin that rounding makes negative is kept down to this."""
 Margins: TypeAlias = Callable[[Array, Array], Array]
 """(starts, lengths) -> (lanes, constraints): by how much each constraint is kept, negative where it is not."""
 

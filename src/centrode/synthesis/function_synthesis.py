@@ -15,6 +15,7 @@ from centrode.synthesis.answers import SynthesisResults, four_bar_answer
 from centrode.synthesis.four_bars import Array, cosines_of_transmission, crank_margins, lengths
 from centrode.synthesis.function_generation import (
     GRID,
+    KEPT_WITHIN,
     SAMPLES,
     FunctionLinkages,
     Margins,
@@ -26,8 +27,6 @@ from centrode.synthesis.function_generation import (
     three_points,
 )
 from centrode.synthesis.requests import Synthesis, SynthesisTask
-
-MET = 1e-9
 
 
 def function_answers(
@@ -141,11 +140,12 @@ def _margins(wanted: Synthesis, crank: Array) -> Margins:
         linkages = _with_unit_frame(sizes)
         columns = [np.empty((len(sizes), 0))]
         if constraints.crank is not None:
-            columns.append(crank_margins(linkages) - 2 * MET)
+            # a crank at its change point does not turn fully, so it stays away from it by what counts as kept
+            columns.append(crank_margins(linkages) - 2 * KEPT_WITHIN)
         if constraints.transmission is not None:
-            # cosines, as an angle has no slope where the linkage is stretched
-            greatest = math.cos(constraints.transmission)
-            columns.append(greatest - np.abs(_cosines(linkages, starts, crank)))
+            # by cosines, as an angle has no slope where the linkage is stretched; near the bound it is that of angles
+            greatest, slope = math.cos(constraints.transmission), math.sin(constraints.transmission)
+            columns.append((greatest - np.abs(_cosines(linkages, starts, crank))) / (slope or 1.0))
         if constraints.length_ratio is not None:
             all_lengths = lengths(linkages)
             columns.append(

@@ -14,13 +14,7 @@ from centrode.synthesis.mechanism_synthesis import mechanism_answers
 from centrode.synthesis.path_synthesis import path_answers
 from centrode.synthesis.pose_synthesis import pose_answers
 from centrode.synthesis.processes import check_jobs, processes
-from centrode.synthesis.requests import (
-    FOUR_BARS,
-    MOST_POSES,
-    SPHERICAL,
-    SYNTHESES,
-    SynthesisTask,
-)
+from centrode.synthesis.requests import FOUR_BARS, MOST_POSES, SPHERICAL, SYNTHESES, SynthesisTask
 from centrode.synthesis.spherical_synthesis import spherical_answers
 from centrode.synthesis.stroke_synthesis import stroke_answers
 
